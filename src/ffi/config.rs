@@ -97,6 +97,9 @@ pub struct CConfig {
     /// Open check: how much more than an answer's its second best has to cost there, up to 127; 0 disables
     /// it.
     pub open_margin: u8,
+    /// Whether the methods along paths refuse answers on patterns that repeat along the row within the
+    /// search, such as a chessboard's; 0 means no.
+    pub refuse_repeats: u8,
 }
 
 /// Returns the filter of a `STEREOPSIS_PRESET_` number.
@@ -171,6 +174,7 @@ impl From<matching::Config> for CConfig {
             fattening_slope: checks.fattening_slope.raw(),
             open_run: checks.open_run,
             open_margin: checks.open_margin,
+            refuse_repeats: checks.refuse_repeats.into(),
             noise: noise_number(noise),
         }
     }
@@ -217,6 +221,7 @@ impl CConfig {
                 fattening_slope: Disparity::from_raw(self.fattening_slope),
                 open_run: self.open_run,
                 open_margin: self.open_margin,
+                refuse_repeats: self.refuse_repeats != 0,
             },
             penalties: Penalties {
                 gradient: self.gradient,

@@ -1054,6 +1054,11 @@ typedef struct stereopsis_config {
    * it.
    */
   uint8_t open_margin;
+  /**
+   * Whether the methods along paths refuse answers on patterns that repeat along the row within the
+   * search, such as a chessboard's; 0 means no.
+   */
+  uint8_t refuse_repeats;
 } stereopsis_config;
 
 /**

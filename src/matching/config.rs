@@ -158,6 +158,9 @@ pub struct Checks {
     /// Open: there an answer stays when every other disparity, but for those up to two px beside it, costs
     /// more by at least this, up to 127. 0: not checked, and the kernel saves the pass.
     pub open_margin: u8,
+    /// Repeats, with the methods along paths: whether answers are refused on patterns that repeat along the
+    /// row within the search, such as a chessboard's.
+    pub refuse_repeats: bool,
 }
 
 impl Checks {
@@ -192,6 +195,7 @@ impl Checks {
         fattening_slope: Disparity::NONE,
         open_run: 0,
         open_margin: 0,
+        refuse_repeats: false,
     };
 
     /// Most answers, few of them wrong.
@@ -212,6 +216,7 @@ impl Checks {
         fattening_slope: Disparity::NONE,
         open_run: 0,
         open_margin: 0,
+        refuse_repeats: false,
     };
 
     /// Sure answers: fewer, and wrong only rarely.
@@ -232,6 +237,7 @@ impl Checks {
         fattening_slope: Disparity::NONE,
         open_run: 0,
         open_margin: 0,
+        refuse_repeats: false,
     };
 }
 

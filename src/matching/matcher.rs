@@ -10,10 +10,10 @@ use super::memory::workspace::Finished;
 use super::memory::{Bytes, Memory, Parts, Rows5};
 use super::method::{Frame, Method};
 use super::row::Row;
-use super::stages::{self, mask};
+use super::stages::{self, mask, words};
 #[cfg(feature = "trace")]
 use super::trace::StageTrace;
-use crate::matching::memory::slices::part_mut;
+use crate::matching::memory::slices::{part_mut, split_mut};
 use crate::units::{Disparity, PixelFlags};
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
@@ -263,6 +263,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     pub(super) fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
         let Parts { codes, columns, workspace } = self.memory.parts(width);
+        let (open, repeats) = split_mut(&mut self.open, words(width).min(W));
         let columns = part_mut(columns, usize::from(self.columns_begin)..);
         let columns = part_mut(columns, ..S::Memory::<W, D>::column_bytes(width, stride));
         Frame {
@@ -276,7 +277,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: part_mut(&mut self.texture, ..width),
             textured: part_mut(&mut self.textured, ..width),
             edges: part_mut(&mut self.edges, ..width),
-            open: &mut self.open,
+            open,
+            repeats,
             support: part_mut(&mut self.support, ..width),
             band: Ring::new(self.band.as_flattened_mut(), width),
             flags: Ring::new(self.band_flags.as_flattened_mut(), width),

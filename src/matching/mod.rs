@@ -21,7 +21,8 @@
 //!     6. median of 3 x 3 answers, if asked for;
 //!     7. costs, their aggregation and winner-take-all (`method`, `backend`);
 //!     8. left-right check and sub-pixel fit;
-//!     9. fattening: answers refused that carry a near surface on over a place without texture;
+//!     9. repeats: answers refused on patterns that repeat along the row; fattening: answers refused that
+//!        carry a near surface on over a place without texture;
 //!     10. smoothing along the row, within surfaces;
 //!     11. confidence, if asked for;
 //!     12. speckle filter, in a band of five rows;

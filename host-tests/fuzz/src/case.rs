@@ -31,6 +31,7 @@ pub fn checks(u: &mut Unstructured<'_>) -> Result<Checks> {
         fattening_slope: Disparity::from_raw(u.arbitrary()?),
         open_run: u.arbitrary()?,
         open_margin: u.arbitrary()?,
+        refuse_repeats: u.arbitrary()?,
     })
 }
 

@@ -5,7 +5,7 @@ const METHODS = ["fast", "block", "sgm-lean", "sgm", "sgm-edge"];
 const FILTERS = ["dense", "default", "strict"];
 const NOISES = ["none", "low", "high"];
 const CHECKS = 7;
-const PENALTIES = 23;
+const PENALTIES = 24;
 
 const px = (value) => `${value} px`;
 const steps = (value) => `${value / 32} px`;
@@ -40,6 +40,7 @@ const CONTROLS = [
   { name: "fattening_slope", label: "Fattening: slope", min: OFF, max: 512, say: offOr(steps) },
   { name: "open_run", label: "Open: most of one row", min: 0, max: 255, say: noneOr(pixels) },
   { name: "open_margin", label: "Open: margin", min: 0, max: 128, say: noneOr(String) },
+  { name: "refuse_repeats", label: "Refuse repeated patterns" },
   { name: "gradient", label: "Gradients cut off at", min: 1, max: 14, say: String },
   { name: "cost", label: "Cost cut off at", min: 1, max: 84, say: String },
   { name: "step[0]", label: "Step of 1 px", min: 1, max: 96, say: String },

@@ -2,7 +2,7 @@
 
 const TYPES = ["Fast", "Block", "SgmLean", "Sgm", "SgmEdge"];
 const capital = (word) => word[0].toUpperCase() + word.slice(1);
-const SWITCHES = ["refuse_flat", "refuse_ceiling", "median"];
+const SWITCHES = ["refuse_flat", "refuse_ceiling", "median", "refuse_repeats"];
 const OPTIONS = ["left_right_px", "uniqueness_percent"];
 const DISPARITIES = ["surface_step", "fill_step", "fattening_slope"];
 

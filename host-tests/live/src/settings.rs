@@ -5,7 +5,7 @@ use stereopsis::matching::{Checks, Config, Filter, Method, Penalties};
 use stereopsis::units::Disparity;
 
 /// The number of settings.
-pub const COUNT: usize = 32;
+pub const COUNT: usize = 33;
 
 /// Settings as the page has them, in the order of its list of controls: whole numbers; a switch is 0 or 1,
 /// and [`OFF`] stands for what is not asked for.
@@ -25,7 +25,7 @@ const MIN_DISPARITY: usize = 4;
 const MIN_CONFIDENCE: usize = 5;
 const BALANCE: usize = 6;
 const CHECKS: usize = 7;
-const PENALTIES: usize = 23;
+const PENALTIES: usize = 24;
 
 /// The method's place in the page's list: `fast`, `block`, `sgm-lean`, `sgm`, `sgm-edge`.
 pub fn method(settings: &Settings) -> usize {
@@ -66,6 +66,7 @@ pub fn preset<S: Method>(settings: &mut Settings) {
         steps(checks.fattening_slope),
         checks.open_run.into(),
         checks.open_margin.into(),
+        checks.refuse_repeats.into(),
         gradient.into(),
         cost.into(),
         step[0].into(),
@@ -111,6 +112,7 @@ pub fn config(settings: &Settings, width: u16, height: u16) -> Config {
             fattening_slope: disparity(settings[CHECKS + 13]),
             open_run: check(14),
             open_margin: check(15),
+            refuse_repeats: check(16) != 0,
         },
         penalties: Penalties {
             gradient: penalty(0),

@@ -105,6 +105,9 @@ pub struct Frame<'a> {
     pub(super) edges: &'a mut [u8],
     /// Open blocks of the last row that was looked at: a bit for each four columns, in words of 32.
     pub(super) open: &'a mut [u8],
+    /// Blocks that are refused as repeated, and those that repeat in each of the last three rows that were
+    /// looked at: four times the words of open blocks.
+    pub(super) repeats: &'a mut [u8],
     /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.

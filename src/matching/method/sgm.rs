@@ -115,6 +115,7 @@ const DEFAULT: Checks = Checks {
     speckle_run: 15,
     fattening_slope: Disparity::ONE_PIXEL,
     open_run: 5,
+    refuse_repeats: true,
     fill_pixels: 48,
     fill_step: Disparity::from_raw(4 * Disparity::ONE),
     ..Checks::DEFAULT
@@ -131,6 +132,7 @@ const DEFAULT_IN_NOISE: [Checks; 2] = [
 const STRICT: Checks = Checks {
     uniqueness_percent: Some(16),
     open_margin: 52,
+    refuse_repeats: true,
     speckle_pixels: 36,
     speckle_run: 15,
     fattening_slope: Disparity::from_raw(16),

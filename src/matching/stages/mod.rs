@@ -24,6 +24,7 @@
 //! texture::flag_untextured    counts                              flags y - r
 //! left_right::make_answers    winners y - r                       band and flags y - r
 //! open::refuse_unsure         open blocks, margins y - r          band and flags y - r
+//! repeats::refuse_repeats     blocks that repeat                  band and flags y - r
 //! fattening::refuse_fattening band and edges y - r                band and flags y - r
 //! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
 //! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
@@ -32,6 +33,7 @@
 //! speckle::drop_speckle       band y - r, y - r - 1, y - r - 4    support; finished and flags y - r - 4
 //! vertical::filter_vertically finished y - r - 5, band y - r      finished y - r - 4
 //! fill::fill_gaps             finished y - r - 4                  finished and flags y - r - 4
+//! repeats::empty_filled       blocks that repeat                  finished and flags y - r - 4
 //! confidence::finish_confidences finished and flags y - r - 4     confidences y - r - 4
 //! withhold::refuse_unsure     confidences of y - r - 4            finished, flags, withheld answers
 //! mask, once the row is out   masks of both images                finished, flags, confidences y - r - 4
@@ -45,6 +47,7 @@ mod median;
 mod left_right;
 mod fattening;
 mod open;
+mod repeats;
 mod smooth;
 pub(super) mod confidence;
 mod speckle;
@@ -54,6 +57,8 @@ mod withhold;
 pub(super) mod mask;
 #[cfg(feature = "trace")]
 mod traced;
+
+pub(super) use open::words;
 
 use super::backend::BY_CAPACITY;
 use super::memory::Rows5;
@@ -110,6 +115,7 @@ pub(super) fn begin(mut frame: Frame<'_>) {
     texture::begin(&mut frame);
     fattening::begin(&mut frame);
     open::begin(&mut frame);
+    repeats::begin(&mut frame);
     speckle::begin(&mut frame);
 }
 
@@ -125,6 +131,7 @@ fn step<S: Method, const MOST: usize>(mut frame: Frame<'_>, y: usize, lines: Opt
     texture::take_texture::<S>(&mut frame, lines);
     fattening::take_edges(&mut frame, lines);
     open::take_open(&mut frame, y, lines);
+    repeats::take_repeats::<S>(&mut frame, y, lines);
     finish_row::<S, MOST>(&mut frame, y, lines);
 }
 
@@ -151,6 +158,7 @@ fn finish_row<S: Method, const MOST: usize>(
         #[cfg(feature = "trace")]
         traced::subpixel(frame, newest);
         open::refuse_unsure(frame, newest);
+        repeats::refuse_repeats::<S>(frame, newest);
         fattening::refuse_fattening::<S>(frame, newest);
         confidence::note_margins(frame, newest);
         smooth::smooth_along_row(frame, newest);
@@ -166,6 +174,7 @@ fn finish_row<S: Method, const MOST: usize>(
     #[cfg(feature = "trace")]
     traced::checked(frame, newest);
     fill::fill_gaps(frame, newest);
+    repeats::empty_filled::<S>(frame, newest);
     confidence::finish_confidences(frame, newest);
     withhold::refuse_unsure(frame, newest);
 }

@@ -27,9 +27,17 @@ use crate::units::{Disparity, PixelFlags};
 use core::ops::Range;
 
 /// Columns of a block.
-const BLOCK: usize = 4;
+pub(super) const BLOCK: usize = 4;
 /// Blocks whose bits are in a word.
 const BLOCKS: usize = u32::BITS as usize;
+
+/// Bytes of a row's bits, in words.
+pub(in crate::matching) const fn words(width: usize) -> usize {
+    width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>()
+}
+
+/// What makes the difference of two sums of pixels positive.
+const MORE: u32 = 0x400;
 
 /// Forgets the frame before: above the first row all is open.
 pub(super) fn begin(frame: &mut Frame<'_>) {
@@ -47,7 +55,7 @@ pub(super) fn take_open(frame: &mut Frame<'_>, y: usize, lines: Option<[&Rows5<'
         let [above, below] = [left[1], left[3]].map(|line| part(line, ..frame.width).as_chunks().0);
         let row = Smooth { above, below, edges: frame.edges.as_chunks().0 };
         let (words, rest) = frame.open.as_chunks_mut();
-        let least = i32::from(least_gradient(frame.config.noise));
+        let least = u32::from(least_gradient(frame.config.noise));
         push(words.get_mut(..frame.width.div_ceil(BLOCK * BLOCKS)).unwrap_or_default(), &row, least);
         debug_assert!(rest.len() < size_of::<u32>(), "a word for each 128 columns");
     }
@@ -64,14 +72,16 @@ impl Smooth<'_> {
     /// Which of the blocks of a word are smooth. The last columns, fewer than a block, are none.
     // Once, for both ways along the row.
     #[inline(never)]
-    fn word(&self, word: usize, least: i32) -> u32 {
+    fn word(&self, word: usize, least: u32) -> u32 {
         let first = word * BLOCKS;
         let rows = self.above.iter().zip(self.below).zip(self.edges).skip(first).take(BLOCKS);
         let (mut bits, mut bit) = (0, 1u32);
         for ((above, below), edges) in rows {
             keep_loop();
-            let apart = (sums(below).wrapping_sub(sums(above)).wrapping_mul(0x1_0001) as i32) >> 16;
-            let is_even = (apart + least - 1) as u32 <= 2 * (least - 1) as u32;
+            // Both differences are of 510 at most: with so much more neither borrows from the other.
+            let both = (sums(below) + MORE * 0x1_0001).wrapping_sub(sums(above));
+            let apart = both.wrapping_mul(0x1_0001) >> 16;
+            let is_even = apart.wrapping_sub(2 * MORE - (least - 1)) <= 2 * (least - 1);
             let has_edge = u32::from_le_bytes(*edges) & 0x0101_0101 != 0;
             bits |= bit & 0u32.wrapping_sub(u32::from(is_even & !has_edge));
             bit <<= 1;
@@ -89,7 +99,7 @@ fn sums(block: &[u8; BLOCK]) -> u32 {
 
 /// Moves the open blocks one row on.
 #[inline(never)]
-fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: i32) {
+fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
     let mut is_joined = 0;
     for (number, open) in open.iter_mut().enumerate() {
         keep_loop();
@@ -122,8 +132,8 @@ fn filled(smooth: u32, seeds: u32) -> u32 {
 /// that follow one another at once, so that a blank image takes hardly more than another one.
 // A function behind a pointer, so that this is there once.
 #[inline(never)]
-fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
-    let words = part(open, ..width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>()).as_chunks().0;
+pub(super) fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
+    let words = part(open, ..words(width)).as_chunks().0;
     let (mut before, mut first) = (0, 0);
     for (number, word) in words.iter().enumerate() {
         let here = u32::from_le_bytes(*word);

@@ -17,6 +17,8 @@ pub enum Part {
     Glossy,
     /// A pole of a few pixels' width.
     Pole,
+    /// A chessboard: squares that repeat along the row within the search.
+    Board,
     /// Anything else, all of which has texture.
     Textured,
 }
@@ -188,6 +190,27 @@ impl HardScene {
             ))
             .with(Part::Pole, body(pole.clone(), pole_texture(53), 0.2, 0.7, 2.4))
             .with(Part::Pole, body(pole, pole_texture(59), 0.36, 0.7, 2.0))
+    }
+
+    /// Two chessboards before a wall with texture: one that faces the cameras, with a period of 14 px, and
+    /// one that is slanted, with one of about 23 px. 450 x 375 px, 64 disparities; `noise_grey` as of
+    /// [`Scene::with_noise`].
+    pub fn boards(noise_grey: f64, seed: u64) -> Self {
+        let rig = RectifiedRig::new(450.0, 0.16, 224.5, 187.0).expect("the numbers are in range");
+        let scene = Scene::new(rig, 450, 375, 64)
+            .with_light(Point3::new(-1.0, -1.6, 0.2), 0.5)
+            .with_noise(noise_grey, seed);
+        let wall = Texture::new(7, 0.5, 0.2).with_octaves(0.1, 5);
+        let board = |squares_m: f64, x: f64, z: f64| {
+            let texture = Texture::new(0, 0.5, 0.6).with_squares(squares_m);
+            let half = Vector3::new(0.3, 0.6, 0.01);
+            Object::new(Shape::Cuboid { half }, texture, Point3::new(x, 0.0, z))
+        };
+        let slant = Rotation3::from_axis_angle(&Vector3::y_axis(), 0.35);
+        Self::new("boards", scene)
+            .with(Part::Textured, Object::plane(Point3::new(0.0, 0.0, 3.2), Vector3::z(), wall))
+            .with(Part::Board, board(0.0373, -0.36, 2.4))
+            .with(Part::Board, board(0.058, 0.42, 2.2).turned(slant))
     }
 }
 

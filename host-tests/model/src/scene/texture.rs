@@ -28,6 +28,9 @@ pub struct Texture {
     /// Factor by which the noise is finer along each of the object's axes: wood has one axis with a small
     /// one.
     pub fineness: Vector3<f64>,
+    /// Side of the squares of a chessboard along the object's x and y, metres, in place of noise: they are as
+    /// much brighter and darker as the contrast says. 0 for noise.
+    pub squares_m: f64,
 }
 
 /// Lattice spacing, px, below which an octave is gone, and above which it is whole.
@@ -38,7 +41,15 @@ const OCTAVE_GAIN: f64 = 2.9;
 impl Texture {
     /// Noise of six octaves from 20 cm down to 6 mm.
     pub fn new(seed: u32, brightness: f64, contrast: f64) -> Self {
-        Self { seed, brightness, contrast, coarsest_m: 0.2, octaves: 6, fineness: Vector3::repeat(1.0) }
+        Self {
+            seed,
+            brightness,
+            contrast,
+            coarsest_m: 0.2,
+            octaves: 6,
+            fineness: Vector3::repeat(1.0),
+            squares_m: 0.0,
+        }
     }
 
     /// No texture at all: one brightness.
@@ -56,6 +67,11 @@ impl Texture {
         Self { fineness: Vector3::new(1.0 / x, 1.0 / y, 1.0 / z), ..self }
     }
 
+    /// A chessboard with squares of this side in place of noise.
+    pub fn with_squares(self, squares_m: f64) -> Self {
+        Self { squares_m, ..self }
+    }
+
     /// The shares of light that points (object coordinates, metres) send back where a pixel covers `pixel_m`
     /// metres.
     ///
@@ -64,6 +80,13 @@ impl Texture {
         let brightness = self.brightness as f32;
         if self.contrast == 0.0 {
             return [brightness; SAMPLES];
+        }
+        if self.squares_m > 0.0 {
+            let row = |x: f32| (f64::from(x) / self.squares_m).floor() as i64;
+            return std::array::from_fn(|i| {
+                let is_dark = (row(points[0][i]) + row(points[1][i])) & 1 != 0;
+                brightness * (1.0 + if is_dark { -self.contrast } else { self.contrast } as f32)
+            });
         }
         let flat = points[2].iter().all(|&z| z == 0.0);
         // Coordinates in lattice cells, and the lattice spacing in pixels, of one octave after the other.

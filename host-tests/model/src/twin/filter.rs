@@ -2,6 +2,7 @@
 //! smoothing down the columns, filling, the deviation.
 
 use super::open::Open;
+use super::repeats::Repeats;
 use super::{Answers, Method};
 use std::ops::Range;
 use stereopsis::matching::{Checks, Config};
@@ -136,10 +137,12 @@ fn sides(checks: &Checks, row: &[Disparity], x: usize) -> Option<[Disparity; 2]>
     (fits && agree).then(|| [row[left], row[right]])
 }
 
-/// The map with small gaps along its rows filled.
-pub(super) fn fill_gaps(checks: &Checks, mut map: Answers) -> Answers {
+/// The map with small gaps along its rows filled, but for pixels near what repeats four rows below them.
+pub(super) fn fill_gaps(checks: &Checks, repeats: &Repeats, mut map: Answers) -> Answers {
     let before = map.disparity.clone();
-    for i in (0..before.len()).filter(|&i| before[i].is_none()) {
+    let last_row = map.width * (map.height - 1);
+    let repeated = |i: usize| repeats.is_near((i + LOOK_AHEAD * map.width).min(last_row + i % map.width));
+    for i in (0..before.len()).filter(|&i| before[i].is_none() && !repeated(i)) {
         let start = i / map.width * map.width;
         if let Some([left, right]) = sides(checks, &before[start..start + map.width], i - start) {
             map.disparity[i] = Disparity::from_raw(left.raw().min(right.raw()));

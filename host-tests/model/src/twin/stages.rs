@@ -2,6 +2,7 @@
 
 use super::cost::{self, Volume};
 use super::open::Open;
+use super::repeats::Repeats;
 use super::smooth::Seen;
 use super::{Answers, Cost, Method, Picture, census, confidence, fattening, filter, paths, select};
 use image::GrayImage;
@@ -53,12 +54,14 @@ impl Stages {
         let (mut winners, mut lengths, mut margins) = (Vec::new(), Vec::new(), Vec::new());
         let (mut flags, mut subpixel) = (Vec::new(), Vec::new());
         let open = Open::of(config, &left, scheme.radius_y);
+        let repeats = Repeats::of(scheme, config, &left);
         for y in 0..height {
             winners.extend(select::records(config, &aggregated, y));
             let (answers, row_flags, row_margins) = select::select_row(scheme, config, &left, &aggregated, y);
             flags.extend_from_slice(&row_flags);
             subpixel.extend_from_slice(&answers);
             let (answers, row_flags) = open.refuse(config, y, &row_margins, answers, row_flags);
+            let (answers, row_flags) = repeats.refuse(y, answers, row_flags);
             let (answers, row_flags) = fattening::refuse(config, &left, y, answers, row_flags);
             let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
             map.disparity.extend(smooth);
@@ -77,7 +80,7 @@ impl Stages {
         }
         let checked = (map.disparity.clone(), map.flags.clone());
         let after = &checked.0;
-        let mut map = filter::fill_gaps(&config.checks, map);
+        let mut map = filter::fill_gaps(&config.checks, &repeats, map);
         map.sigma_px = filter::sigmas(scheme, config, &smoothed, after, &map);
         if config.confidence || config.min_confidence > 0 {
             map.confidence = confidence::confidences(config, &margins, &smoothed, [&answers, after], &map);

@@ -28,12 +28,13 @@ prop_compose! {
         fattening_slope in prop_oneof![0u16..200, Just(u16::MAX)].prop_map(Disparity::from_raw),
         open_run in prop_oneof![Just(0u8), 1u8..20, any::<u8>()],
         open_margin in prop_oneof![Just(0u8), 1u8..130],
+        refuse_repeats: bool,
     ) -> Checks {
         Checks {
             left_right_px, uniqueness_percent, refuse_flat, texture_gradient, texture_pixels, refuse_ceiling,
                 smoothing_radius,
             speckle_pixels, surface_step, median, fill_pixels, fill_step,
-            speckle_run, fattening_slope, open_run, open_margin,
+            speckle_run, fattening_slope, open_run, open_margin, refuse_repeats,
         }
     }
 }

@@ -87,6 +87,7 @@ fn random_checks(random: &mut Random, of_surfaces: &mut Random) -> Checks {
         ])),
         open_run: *of_surfaces.pick(&[0, 1, 5, u8::MAX]),
         open_margin: *of_surfaces.pick(&[0, 0, 1, 40, 127, 128]),
+        refuse_repeats: of_surfaces.below(2) == 1,
     }
 }
 

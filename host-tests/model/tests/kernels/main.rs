@@ -1,8 +1,8 @@
 //! The pipeline against its naive twin: every disparity, flag, deviation and confidence, to the bit, for
 //! every kernel.
 //!
-//! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `any`: any
-//!   combination of them. `penalties`: those at the bounds.
+//! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `repeats`: patterns
+//!   that repeat. `any`: any combination of them. `penalties`: those at the bounds.
 //! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
 //!   place. `external`: rows of winners from outside.
 
@@ -13,6 +13,7 @@ mod list;
 mod moved;
 mod penalties;
 mod pictures;
+mod repeats;
 
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Config, Method};

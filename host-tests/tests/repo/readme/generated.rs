@@ -148,13 +148,16 @@ fn accuracy_table() -> String {
 /// One of the shares.
 type Of = fn(&Shares) -> f64;
 
-/// What all methods say of a sky, a white wall, a glossy box and thin poles, with the filters that refuse.
+/// What all methods say of a sky, a white wall, a glossy box, thin poles and chessboards, with the filters
+/// that refuse.
 fn hard_table() -> String {
     let mut table =
         "| method | filter | sky: answered, near | wall: answered, near, far | glossy: near, far | \
-                     poles: answered, far |\n| --- | --- | ---: | ---: | ---: | ---: |\n"
+                     poles: answered, far | boards: answered, wrong |\n\
+                     | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
             .to_owned();
-    let scenes = [HardScene::street(1.0, 1), HardScene::white_room(1.0, 1)].map(|hard| {
+    let scenes = [HardScene::street(1.0, 1), HardScene::white_room(1.0, 1), HardScene::boards(1.0, 1)];
+    let scenes = scenes.map(|hard| {
         let (left, right) = hard.scene.render();
         let camera = MemoryPair::new(hard.scene.width(), left.to_vec(), right.to_vec())
             .expect("two pictures of one size");
@@ -181,11 +184,13 @@ fn hard_table() -> String {
             let answered: Of = |shares| shares.answered;
             let near: Of = |shares| shares.false_near;
             let far: Of = |shares| shares.false_far;
-            let cells: [(scene::Part, &[_]); 4] = [
+            let wrong: Of = |shares| shares.false_near + shares.false_far;
+            let cells: [(scene::Part, &[_]); 5] = [
                 (scene::Part::Sky, &[answered, near]),
                 (scene::Part::Wall, &[answered, near, far]),
                 (scene::Part::Glossy, &[near, far]),
                 (scene::Part::Pole, &[answered, far]),
+                (scene::Part::Board, &[answered, wrong]),
             ];
             let cells =
                 cells.map(|(part, of)| of.iter().map(|&of| shares(part, of)).collect::<Vec<_>>().join(", "));

@@ -132,6 +132,30 @@ fn depths_and_colours_come_without_a_file() {
 }
 
 #[test]
+fn a_field_of_view_stands_for_a_focal_length() {
+    let bench = Bench::new();
+    let with = |more: &[&str]| {
+        let mut args = arguments(&bench, "a.png", "b.png", "64");
+        args.extend(more.iter().map(|&arg| arg.to_owned()));
+        stereo(&args)
+    };
+    for option in ["--field-of-view", "--fov"] {
+        let run = with(&[option, "60", "--baseline-mm", "100"]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        let summary = json(&bench.path("out/summary.json"));
+        let width = summary["width"].as_f64().expect("a width");
+        let focal = summary["depth"]["focal_px"].as_f64().expect("a focal length");
+        assert!((focal - width / 2.0 * 3f64.sqrt()).abs() < 0.01, "{focal} px of {width} columns");
+    }
+    let both = ["--focal-px", "500", "--fov", "60", "--baseline-mm", "100"];
+    for wrong in
+        [&["--fov", "60"][..], &["--baseline-mm", "100"], &["--fov", "0", "--baseline-mm", "1"], &both]
+    {
+        assert_eq!(with(wrong).status.code(), Some(2), "{wrong:?}");
+    }
+}
+
+#[test]
 fn masks_take_answers_away() {
     let bench = Bench::new();
     let args = arguments(&bench, "a.png", "b.png", "64");

@@ -3,7 +3,7 @@
 use image::{GrayImage, imageops};
 use stereopsis_host::pair::{PairCheck, PairFault, PairMatches, search};
 use stereopsis_host::run::MethodName;
-use stereopsis_host::scene::Scene;
+use stereopsis_host::scene::{HardScene, Scene};
 
 /// What is found of two pictures and a search.
 fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
@@ -49,6 +49,22 @@ fn each_fault_is_found() {
         (&left, &other, Some(PairFault::TwoScenes)),
         // Where nothing is to be seen nothing is said.
         (&left, &flat, None),
+    ] {
+        let found = check(first, second, 64);
+        assert_eq!(found.fault, fault, "{found:?}");
+    }
+}
+
+#[test]
+fn faults_are_found_where_all_is_far() {
+    // Of a street most disparities are under the rows that partners may be apart.
+    let (left, right) = HardScene::street(1.0, 3).scene.render();
+    let turned = [&left, &right].map(imageops::rotate90);
+    for (first, second, fault) in [
+        (&left, &right, None),
+        (&turned[0], &turned[1], Some(PairFault::BothOnTheirSides)),
+        (&left, &imageops::flip_horizontal(&right), Some(PairFault::RightMirrored)),
+        (&left, &imageops::rotate180(&right), Some(PairFault::RightUpsideDown)),
     ] {
         let found = check(first, second, 64);
         assert_eq!(found.fault, fault, "{found:?}");

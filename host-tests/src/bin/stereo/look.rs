@@ -144,6 +144,8 @@ pub fn look(
     if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
         return Err(Failure::new(format!("{fault}, or give --force")));
     }
-    let rows = Rows::measure(&matches, ImageSize { width, height }, camera);
+    // Rows of images that are turned or mirrored say nothing of the cameras.
+    let has_rows = matches!(check.fault, None | Some(PairFault::Swapped));
+    let rows = has_rows.then(|| Rows::measure(&matches, ImageSize { width, height }, camera)).flatten();
     Ok(Look { config, check: Some(check), rows })
 }

@@ -164,7 +164,7 @@ impl MatchArgs {
     /// All that results depend on but the images, as text.
     fn settings_text(&self) -> String {
         let Self { search, method, balance, calib, rectify, masks, options, depth, .. } = self;
-        let rig = (self.focal_px, self.baseline_mm, self.colour_range);
+        let rig = (&self.typed, self.colour_range);
         format!("{:?}", (search, method, balance, calib, rectify, masks, options, depth, rig))
     }
 

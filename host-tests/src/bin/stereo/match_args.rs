@@ -2,7 +2,8 @@
 
 use crate::look::{MaskArgs, SearchArgs};
 use crate::results::DepthArgs;
-use crate::shared::{BalanceArgs, MethodArgs, RectifyOptions, colour_range, filter, length, method, noise};
+use crate::scale::TypedRig;
+use crate::shared::{BalanceArgs, MethodArgs, RectifyOptions, colour_range, filter, method, noise};
 use crate::sources::SourceArgs;
 use crate::watch::ObstacleArgs;
 use clap::Args;
@@ -33,15 +34,8 @@ pub struct MatchArgs {
     pub masks: MaskArgs,
     #[command(flatten)]
     pub options: RectifyOptions,
-    /// Focal length of the rectified cameras, px, where there is no file: their centre is taken to be that of
-    /// the images
-    #[arg(long, value_name = "PX", conflicts_with = "calib", requires = "baseline_mm", value_parser = length,
-        allow_negative_numbers = true)]
-    pub focal_px: Option<f32>,
-    /// Distance of the two cameras, mm
-    #[arg(long, value_name = "MM", requires = "focal_px", value_parser = length, allow_negative_numbers =
-        true)]
-    pub baseline_mm: Option<f32>,
+    #[command(flatten)]
+    pub typed: TypedRig,
     #[command(flatten)]
     pub depth: DepthArgs,
     /// Disparities from the darkest to the brightest colour of disparity_colour.png, px, as 0:64: those

@@ -1,6 +1,7 @@
 //! `stereo plan`: what a rig of two cameras can tell, and what it takes, before it is built.
 
 use crate::failure::Failure;
+use crate::scale::{self, angle};
 use crate::shared::{image_size, length, method, print};
 use clap::Args;
 use stereopsis::geometry::camera::ImageSize;
@@ -82,11 +83,6 @@ pub fn percent(text: &str) -> Result<f64, &'static str> {
     value.ok_or("a number from 0.01 to 100 is needed")
 }
 
-fn angle(text: &str) -> Result<f64, &'static str> {
-    let value = text.parse().ok().filter(|value| (1.0..=170.0).contains(value));
-    value.ok_or("a number from 1 to 170 is needed")
-}
-
 fn core(text: &str) -> Result<&'static str, String> {
     let found = CORES.into_iter().map(|(name, _)| name).find(|name| *name == text);
     found.ok_or_else(|| {
@@ -144,7 +140,7 @@ fn focal_px(args: &PlanArgs) -> Result<f64, Failure> {
     let width = f64::from(args.size.width);
     let LensArgs { focal_px, focal_mm, field_of_view } = args.lens;
     let lens = focal_mm.zip(args.sensor_width_mm).map(|(f, sensor)| exact(f) / exact(sensor) * width);
-    let seen = field_of_view.map(|degrees| width / 2.0 / (degrees.to_radians() / 2.0).tan());
+    let seen = field_of_view.map(|degrees| scale::focal_px(degrees, args.size.width));
     let found = focal_px.map(exact).or(lens).or(seen);
     found.ok_or_else(|| Failure::new("--focal-px: is missing; give it, --focal-mm or --field-of-view"))
 }

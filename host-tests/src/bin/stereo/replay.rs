@@ -8,7 +8,8 @@ use crate::input;
 use crate::look::refuse_swapped;
 use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, Unit, filter, length, method, noise, print, rate};
+use crate::scale::TypedRig;
+use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, Unit, filter, method, noise, print, rate};
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
 use std::fmt::Display;
@@ -80,15 +81,8 @@ pub struct ReplayArgs {
     /// The unit of lengths in OpenCV's files, which do not say it: m where none is given
     #[arg(long, value_name = "UNIT", requires = "calib")]
     pub unit: Option<Unit>,
-    /// Focal length of the cameras, px, for --obstacles, where there is no file: their centre is taken to be
-    /// that of the lines
-    #[arg(long, value_name = "PX", conflicts_with = "calib", requires_all = ["baseline_mm", "obstacles"],
-        value_parser = length, allow_negative_numbers = true)]
-    pub focal_px: Option<f32>,
-    /// Distance of the two cameras, mm
-    #[arg(long, value_name = "MM", requires = "focal_px", value_parser = length, allow_negative_numbers =
-        true)]
-    pub baseline_mm: Option<f32>,
+    #[command(flatten)]
+    pub typed: TypedRig,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,

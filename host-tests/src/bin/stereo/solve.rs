@@ -134,7 +134,7 @@ pub fn solve(
 
 /// Whether obstacles, if they are asked for, can be found.
 pub fn check_obstacles(args: &MatchArgs) -> Result<(), Failure> {
-    if args.watch.obstacles && args.calib.is_empty() && args.focal_px.is_none() {
+    if args.watch.obstacles && args.calib.is_empty() && !args.typed.is_given() {
         return Err(Failure::new(
             "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
         ));

@@ -13,9 +13,15 @@ use stereopsis_host::run::GuardedFrame;
 
 /// A watch and its scale, where obstacles are asked for.
 pub fn watch(args: &ReplayArgs, header: Header) -> Result<Option<(Watch, DepthScale)>, Failure> {
-    let Some(watch) = args.watch.watch() else { return Ok(None) };
+    let Some(watch) = args.watch.watch() else {
+        return if args.typed.is_given() {
+            Err(Failure::new("--baseline-mm: is for --obstacles, which is missing"))
+        } else {
+            Ok(None)
+        };
+    };
     let size = ImageSize { width: header.width, height: header.height };
-    let scale = match (args.focal_px.zip(args.baseline_mm), args.calib.len()) {
+    let scale = match (args.typed.numbers(size), args.calib.len()) {
         (Some(rig), _) => of_numbers(rig, size)?,
         (None, 0) => {
             return Err(Failure::new(

@@ -1,10 +1,13 @@
 //! What is wrong with a pair of pictures, by the features that both show: cameras that are swapped, pictures
 //! that are turned, mirrored, the same or of two scenes, and a search that is too short.
 
+mod lacks;
+
 use crate::correspond::{CorrespondError, Plan, correspond};
 use crate::map::quantile;
 use crate::run::{MemoryPair, MethodName, run};
 use image::{GrayImage, imageops};
+use lacks::{share, untextured};
 use nalgebra::Point2;
 use serde::Serialize;
 use std::fmt;
@@ -55,9 +58,22 @@ impl PairMatches {
         Ok(Self { all, in_rows })
     }
 
-    /// Whether most matches are in rows, and there are enough of them.
-    fn is_aligned(&self) -> bool {
-        self.in_rows.len() >= FEWEST && 2 * self.in_rows.len() > self.all.len()
+    /// Whether most matches are in rows, there are enough of them, and their disparities are those of a pair:
+    /// of a mirrored image they spread over all its width.
+    fn is_aligned(&self, width: u32) -> bool {
+        self.in_rows.len() >= FEWEST
+            && 2 * self.in_rows.len() > self.all.len()
+            && 3.0 * middle(self.disparities_px()).spread < f64::from(width)
+    }
+
+    /// Whether the matches move along columns, as far as is different, and not along rows.
+    fn moves_along_columns(&self) -> bool {
+        let along_rows = middle(self.all.iter().map(|s| s.first.x - s.second.x).collect());
+        let along_columns = middle(self.all.iter().map(|s| s.first.y - s.second.y).collect());
+        self.all.len() >= FEWEST
+            && along_rows.median.abs() < STILL
+            && along_columns.median.abs() > 2.0 * STILL
+            && along_columns.spread > STILL.max(3.0 * along_rows.spread)
     }
 
     /// The disparities of the matches in rows, in ascending order, px.
@@ -66,6 +82,19 @@ impl PairMatches {
         found.sort_by(f64::total_cmp);
         found
     }
+}
+
+/// The middle of some numbers, and from their lowest fifth to their highest one.
+struct Middle {
+    median: f64,
+    spread: f64,
+}
+
+/// The middle of some numbers; all zero of none.
+fn middle(mut numbers: Vec<f64>) -> Middle {
+    numbers.sort_by(f64::total_cmp);
+    let at = |tenths: usize| numbers.get(numbers.len() * tenths / 10).copied().unwrap_or(0.0);
+    Middle { median: at(5), spread: at(8) - at(2) }
 }
 
 /// What is wrong with a pair.
@@ -218,46 +247,16 @@ fn small_range(pictures: [&GrayImage; 2]) -> Option<[f64; 2]> {
     })?
 }
 
-/// The share of the pixels of both pictures that are so.
-fn share(pictures: [&GrayImage; 2], is_so: impl Fn(u8) -> bool) -> f64 {
-    let pixels = || pictures.into_iter().flat_map(|picture| picture.iter());
-    pixels().filter(|&&pixel| is_so(pixel)).count() as f64 / pixels().count().max(1) as f64
-}
-
-/// The share of a picture around whose pixels nothing changes along the row.
-fn untextured(picture: &GrayImage) -> f64 {
-    const REACH: u32 = 4;
-    const CHANGE: u8 = 4;
-    let (width, height) = picture.dimensions();
-    let changes = |x: u32, y: u32| {
-        let [left, right] =
-            [x.saturating_sub(1), (x + 1).min(width - 1)].map(|x| picture.get_pixel(x, y).0[0]);
-        left.abs_diff(right) >= CHANGE
-    };
-    // Sums of all rows above and all columns to the left.
-    let stride = width as usize + 1;
-    let mut sums = vec![0u32; stride * (height as usize + 1)];
-    for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
-        let at = (y as usize + 1) * stride + x as usize + 1;
-        sums[at] = u32::from(changes(x, y)) + sums[at - 1] + sums[at - stride] - sums[at - stride - 1];
-    }
-    let is_flat = |(y, x): &(u32, u32)| {
-        let [top, bottom] =
-            [y.saturating_sub(REACH), (y + REACH + 1).min(height)].map(|y| y as usize * stride);
-        let [first, end] = [x.saturating_sub(REACH), (x + REACH + 1).min(width)].map(|x| x as usize);
-        sums[bottom + end] + sums[top + first] == sums[bottom + first] + sums[top + end]
-    };
-    let flat = (0..height).flat_map(|y| (0..width).map(move |x| (y, x))).filter(is_flat).count();
-    flat as f64 / (f64::from(width) * f64::from(height)).max(1.0)
-}
-
 /// What is wrong with the pictures, as far as features tell.
 pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFault> {
     let [left, right] = pictures;
     if left.as_raw() == right.as_raw() {
         return Some(PairFault::Same);
     }
-    if matches.is_aligned() {
+    if matches.moves_along_columns() {
+        return Some(PairFault::BothOnTheirSides);
+    }
+    if matches.is_aligned(left.width()) {
         let moved: Vec<_> = matches.disparities_px().into_iter().filter(|d| d.abs() > STILL).collect();
         let negative = moved.iter().filter(|&&d| d < 0.0).count();
         return (moved.len() >= FEWEST && 20 * negative > 17 * moved.len()).then_some(PairFault::Swapped);
@@ -268,7 +267,7 @@ pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFau
     }
     let is_cured = |cured: &GrayImage| {
         cured.dimensions() == left.dimensions()
-            && PairMatches::find([left, cured], None).is_ok_and(|found| found.is_aligned())
+            && PairMatches::find([left, cured], None).is_ok_and(|found| found.is_aligned(cured.width()))
     };
     if is_cured(&imageops::rotate180(right)) {
         return Some(PairFault::RightUpsideDown);

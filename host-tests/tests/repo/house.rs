@@ -10,6 +10,9 @@ const MOST_LINES: usize = 300;
 /// Lines of README.md, at most: what is more belongs in docs/.
 const MOST_README_LINES: usize = 130;
 
+/// Lines of the matcher that depend on a target, at most: the choice among targets has one home.
+const MOST_TARGET_LINES: usize = 39;
+
 /// What the root may hold.
 const ROOT: [&str; 18] = [
     ".cargo",
@@ -55,6 +58,16 @@ const PANICKING_MACROS: [&str; 5] = ["panic", "todo", "unimplemented", "unreacha
 /// How many lines a Rust file has before its tests.
 fn lines_without_tests(text: &str) -> usize {
     text.lines().take_while(|line| line.trim() != "#[cfg(test)]").count()
+}
+
+/// Lines of code with a condition on a target.
+fn target_lines(text: &str) -> usize {
+    let is_condition = |line: &&str| {
+        let line = line.trim_start();
+        let names_a_target = ["target_", "stereopsis_"].iter().any(|what| line.contains(what));
+        !line.starts_with("//") && line.contains("cfg") && names_a_target
+    };
+    text.lines().filter(is_condition).count()
 }
 
 /// Lines of `text` with something of one machine in them.
@@ -133,6 +146,14 @@ fn features_add_code_and_take_none_away() {
 }
 
 #[test]
+fn the_matcher_chooses_among_targets_in_one_place() {
+    let files = source::core_files();
+    let of_matcher = files.iter().filter(|(name, _)| name.starts_with("src/matching/"));
+    let lines: usize = of_matcher.map(|(_, text)| target_lines(text)).sum();
+    assert!((1..=MOST_TARGET_LINES).contains(&lines), "{lines} lines of src/matching depend on a target");
+}
+
+#[test]
 fn the_root_is_tidy() {
     let files = source::files();
     let stray: Vec<_> =
@@ -172,6 +193,13 @@ mod shown_to_fail {
         }
         assert!(foreign("README.md", "a workshop, a root, a home").is_empty());
         assert!(foreign("Cargo.lock", FOREIGN[5]).is_empty());
+    }
+
+    #[test]
+    fn conditions_on_targets_are_counted() {
+        let text = "// cfg(stereopsis_simd)\n#[cfg(stereopsis_simd)]\n    if cfg!(target_arch = \"arm\") {\n\
+                    #[cfg_attr(not(stereopsis_dsp), inline)]\n#[cfg(test)]\nuse stereopsis_x;\n";
+        assert_eq!(target_lines(text), 3);
     }
 
     #[test]

@@ -1,4 +1,4 @@
-//! Loops that the compiler leaves as they are written.
+//! Loops that the compiler leaves as they are written, and functions that it compiles once.
 
 /// In the body of a loop: on 32-bit cores the loop is neither unrolled nor turned into vectors. Where a row's
 /// work is little, that would take more flash than it saves instructions.
@@ -32,3 +32,14 @@ pub(in crate::matching) fn fill_row<T: Copy>(row: &mut [T], number: T) {
         *one = number;
     }
 }
+
+/// Functions that are part of their caller where that is compiled with a kernel's vectors, and elsewhere are
+/// compiled once, for all methods and numbers of disparities.
+macro_rules! once_without_vectors {
+    ($($function:item)*) => {$(
+        #[cfg_attr(stereopsis_simd, inline(always))]
+        #[cfg_attr(not(stereopsis_simd), inline(never))]
+        $function
+    )*};
+}
+pub(in crate::matching) use once_without_vectors;

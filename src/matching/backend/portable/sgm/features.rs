@@ -5,7 +5,7 @@
 //! * a census of eight neighbours, wide along the line.
 
 use crate::imaging::{census_wide8, gradients};
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{keep_loop, once_without_vectors};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
@@ -90,16 +90,6 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
     Some(Features { left: of_left, right: of_right, count })
 }
 
-/// The features of the first two columns.
-#[cfg_attr(stereopsis_simd, inline(always))]
-#[cfg_attr(not(stereopsis_simd), inline(never))]
-fn first_columns<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32) -> [[u8; 2]; 3] {
-    let width = lines[2].len().min(2);
-    let mut first = [[0; 2]; 3];
-    looks_of::<R>(lines, gradient, shift, first.each_mut().map(|first| part_mut(first, ..width)));
-    first
-}
-
 /// Rows of so many bytes; what there is no room for is empty.
 #[inline(always)]
 fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
@@ -107,40 +97,45 @@ fn rows<const N: usize>(room: &mut [u8], length: usize) -> [&mut [u8]; N] {
     core::array::from_fn(|_| rows.next().unwrap_or_default())
 }
 
-/// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
-/// which is the same as after.
-#[cfg_attr(not(stereopsis_simd), inline(never))]
-#[cfg_attr(stereopsis_simd, inline(always))]
-fn looks_of<R: FeatureRows>(
-    lines: &Rows5<'_>,
-    gradient: u8,
-    shift: u32,
-    [along, across, census]: [&mut [u8]; 3],
-) {
-    R::looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
-    if shift > 0 {
-        shift_down(along, shift);
-        shift_down(across, shift);
+once_without_vectors! {
+    /// The features of the first two columns.
+    fn first_columns<R: FeatureRows>(lines: &Rows5<'_>, gradient: u8, shift: u32) -> [[u8; 2]; 3] {
+        let width = lines[2].len().min(2);
+        let mut first = [[0; 2]; 3];
+        looks_of::<R>(lines, gradient, shift, first.each_mut().map(|first| part_mut(first, ..width)));
+        first
     }
-}
 
-/// Numbers, shifted to the right.
-#[cfg_attr(not(stereopsis_simd), inline(never))]
-fn shift_down(numbers: &mut [u8], shift: u32) {
-    for number in numbers {
-        keep_loop();
-        *number >>= shift;
+    /// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
+    /// which is the same as after.
+    fn looks_of<R: FeatureRows>(
+        lines: &Rows5<'_>,
+        gradient: u8,
+        shift: u32,
+        [along, across, census]: [&mut [u8]; 3],
+    ) {
+        R::looks(lines, gradient << shift, [&mut *along, &mut *across, census]);
+        if shift > 0 {
+            shift_down(along, shift);
+            shift_down(across, shift);
+        }
     }
-}
 
-/// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
-#[cfg_attr(stereopsis_simd, inline(always))]
-#[cfg_attr(not(stereopsis_simd), inline(never))]
-fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
-    repeat(row, first, outside);
-    let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
-    let end = end.min(row.len());
-    part_mut(row, end..).fill(last);
+    /// Numbers, shifted to the right.
+    fn shift_down(numbers: &mut [u8], shift: u32) {
+        for number in numbers {
+            keep_loop();
+            *number >>= shift;
+        }
+    }
+
+    /// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
+    fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
+        repeat(row, first, outside);
+        let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
+        let end = end.min(row.len());
+        part_mut(row, end..).fill(last);
+    }
 }
 
 /// Repeats the first column before the image.

@@ -202,7 +202,9 @@ fn half_a_file_is_an_error_wherever_it_ends() {
     for (format, name) in FORMATS {
         let whole = encode(&image, format);
         MockCamera::open(files.put(name, &whole)).expect("the whole file");
-        for length in 1..whole.len() {
+        // All of the header, then every fifth byte, and the last ones.
+        let (header, end) = (whole.len().min(64), whole.len().saturating_sub(16));
+        for length in (1..header).chain((header..end).step_by(5)).chain(end.max(header)..whole.len()) {
             let path = files.put(name, &whole[..length]);
             let error =
                 MockCamera::open(&path).expect_err(&format!("{format:?}: {length} of {} bytes", whole.len()));
@@ -238,7 +240,7 @@ fn damage_anywhere_is_survived() {
     let files = Files::new();
     for (format, name) in FORMATS {
         let whole = encode(&grey().into(), format);
-        let step = (whole.len() / 300).max(1);
+        let step = (whole.len() / 120).max(1);
         for at in (0..whole.len()).step_by(step) {
             let mut damaged = whole.clone();
             damaged[at] ^= 0x5a;

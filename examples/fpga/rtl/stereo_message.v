@@ -1,8 +1,8 @@
-// The message of a path: what each disparity costs at the pixel that it goes to, over the cheapest way
+// The message of the path down: what each disparity costs at the pixel that it goes to, over the cheapest way
 // there.
 //
 // In: the path's costs at one pixel, PARALLEL in a clock, a group after the other. Out: while the next
-// pixel's groups pass, the message to it of each group,
+// pixel's groups pass, the message to it of each group, with two registers between where HOLDS is 1,
 //
 //   min(q(d), q(d - 1) + step, q(d + 1) + step, least q + jump) - least q
 //
@@ -12,7 +12,8 @@
 module stereo_message #(
     parameter PARALLEL = 64,
     parameter GROUPS = 1,
-    parameter LEVELS = 6
+    parameter LEVELS = 6,
+    parameter HOLDS = 0
 ) (
     input wire clk,
     input wire go,
@@ -74,10 +75,18 @@ module stereo_message #(
         end
     endgenerate
 
+    // The first stage: the cheapest way but a jump. The second one: over the least cost, and a jump at most.
     // verilator lint_off UNUSEDSIGNAL
     wire [WORD+13:0] around = {after_last, here, before_first};
     // verilator lint_on UNUSEDSIGNAL
-    wire [7:0] far = {1'b0, least} + {1'b0, jump};
+    wire [WORD-1:0] ways, ways_1, over;
+    wire [6:0] jump_1, least_1;
+    stereo_stage #(.BITS(WORD + 14), .HOLDS(HOLDS)) first_stage (
+        .clk(clk), .go(go), .data({ways, jump, least}), .held({ways_1, jump_1, least_1})
+    );
+    stereo_stage #(.BITS(WORD), .HOLDS(HOLDS)) second_stage (
+        .clk(clk), .go(go), .data(over), .held(message)
+    );
     genvar i;
     generate
         for (i = 0; i < PARALLEL; i = i + 1) begin : lane
@@ -85,13 +94,10 @@ module stereo_message #(
             wire [6:0] above = around[7*(i+2) +: 7];
             wire [6:0] beside = below < above ? below : above;
             wire [7:0] near = {1'b0, beside} + {3'b0, step};
-            wire [7:0] same = {1'b0, here[7*i +: 7]};
-            wire [7:0] moved = near < far ? near : far;
-            // verilator lint_off UNUSEDSIGNAL
-            // It is a jump at most.
-            wire [7:0] over = (same < moved ? same : moved) - {1'b0, least};
-            // verilator lint_on UNUSEDSIGNAL
-            assign message[7*i +: 7] = over[6:0];
+            wire [6:0] same = here[7*i +: 7];
+            assign ways[7*i +: 7] = {1'b0, same} < near ? same : near[6:0];
+            wire [6:0] moved = ways_1[7*i +: 7] - least_1;
+            assign over[7*i +: 7] = moved < jump_1 ? moved : jump_1;
         end
     endgenerate
 endmodule

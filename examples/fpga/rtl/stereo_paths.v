@@ -8,8 +8,9 @@
 // for each column three rows of the left image.
 //
 // A token has the column's features; a clock later its costs are made, two clocks later they are there and
-// so are the messages to it, three clocks later its paths, four its sums. Messages down are made of costs
-// two columns to both sides in the row above: those are read three columns ahead.
+// its paths begin. With four groups and more, these take two registers more than with fewer (HOLDS): three or
+// five clocks later are its paths, a clock after that its sums. Messages down are made of costs two columns to
+// both sides in the row above: those are read three columns ahead.
 `default_nettype none
 
 module stereo_paths #(
@@ -18,6 +19,7 @@ module stereo_paths #(
     parameter PARALLEL = 64,
     parameter GROUPS = 1,
     parameter LEVELS = 6,
+    parameter HOLDS = 0,
     parameter COLUMN_BITS = 11,
     parameter GROUP_BITS = 1
 ) (
@@ -50,7 +52,7 @@ module stereo_paths #(
     input wire [24:0] left,
     input wire [29:0] right,
     input wire [7:0] guide,
-    // Four clocks later: the sums of the group, a byte each.
+    // Four clocks later, or six with HOLDS: the sums of the group, a byte each.
     output reg [8*PARALLEL-1:0] sums
 );
     localparam PLACE_BITS = $clog2(WIDTH);
@@ -60,9 +62,12 @@ module stereo_paths #(
     localparam RING_BITS = $clog2(RING);
     localparam WORD = 7 * PARALLEL;
     localparam [6:0] NOT_SEARCHED = 127;
+    localparam [4:0] NO_COST = 31;
+    // The clock in which paths go out, counted from the token.
+    localparam OUT = HOLDS == 0 ? 2 : 4;
 
-    // The token one, two and three clocks later.
-    reg [2:0] valids;
+    // The token one, two and more clocks later.
+    reg [OUT:0] valids;
     // verilator lint_off UNUSEDSIGNAL
     reg [COLUMN_BITS-1:0] column_1, column_2;
     // verilator lint_on UNUSEDSIGNAL
@@ -70,8 +75,8 @@ module stereo_paths #(
     reg [5:0] flags_1;
     reg [5:0] flags_2;
     reg first_group_1, first_group_2, last_group_1, last_group_2;
-    reg writes_down_3, writes_left_3;
-    reg [ADDRESS_BITS-1:0] place_3;
+    reg writes_down, writes_left;
+    reg [ADDRESS_BITS-1:0] written_place;
     reg [7:0] guide_1;
     wire [5:0] flags = {is_inside, is_back, is_first, begins_average, enters, begins_paths};
     wire inside_1, back_1, inside_2, back_2, first_2, begins_average_2, enters_2, begins_paths_2;
@@ -79,7 +84,7 @@ module stereo_paths #(
     assign {inside_2, back_2, first_2, begins_average_2, enters_2, begins_paths_2} = flags_2;
 
     // Places in memory: of a column and group.
-    wire [ADDRESS_BITS-1:0] place_ahead, place_1, place_2;
+    wire [ADDRESS_BITS-1:0] place_ahead, place_1, place_2, place_out;
     wire [RING_BITS-1:0] ring_behind, ring_ahead_1;
     reg [2:0] ahead_1;
     generate
@@ -103,7 +108,7 @@ module stereo_paths #(
 
     always @(posedge clk) begin
         if (reset) valids <= 0;
-        else if (go) valids <= {valids[1:0], valid};
+        else if (go) valids <= {valids[OUT-1:0], valid};
         if (go) begin
             {column_1, group_1, first_group_1, last_group_1} <= {column, group, first_group, last_group};
             {column_2, group_2, first_group_2, last_group_2} <=
@@ -112,11 +117,22 @@ module stereo_paths #(
             flags_2 <= flags_1;
             ahead_1 <= ahead[2:0];
             guide_1 <= guide;
-            place_3 <= place_2;
-            writes_down_3 <= inside_2 && !back_2;
-            writes_left_3 <= inside_2 && back_2;
+            written_place <= place_out;
+            writes_down <= inside_out && !back_out;
+            writes_left <= inside_out && back_out;
         end
     end
+
+    // The token when its paths go out.
+    localparam TOKEN = ADDRESS_BITS + 3;
+    wire [TOKEN-1:0] token_3;
+    wire inside_out, back_out, begins_paths_out;
+    stereo_stage #(.BITS(TOKEN), .HOLDS(HOLDS)) token_stage (
+        .clk(clk), .go(go), .data({place_2, inside_2, back_2, begins_paths_2}), .held(token_3)
+    );
+    stereo_stage #(.BITS(TOKEN), .HOLDS(HOLDS)) token_stage_out (
+        .clk(clk), .go(go), .data(token_3), .held({place_out, inside_out, back_out, begins_paths_out})
+    );
 
     // Costs, and their averages: those up to the row above, and with this row.
     wire [5*PARALLEL-1:0] costs;
@@ -167,26 +183,31 @@ module stereo_paths #(
 
     // The path down, in the row above: three columns ahead, and one column behind from a ring.
     wire [WORD-1:0] down_ahead, down_behind;
-    reg [WORD-1:0] down_3;
+    reg [WORD-1:0] down_made;
     reg [WORD-1:0] down_average;
     stereo_ram #(.BITS(WORD), .DEPTH(PLACES)) down_memory (
         .clk(clk), .read(go), .read_address(place_ahead), .read_data(down_ahead),
-        .write(go && valids[2] && writes_down_3), .write_address(place_3), .write_data(down_3)
+        .write(go && valids[OUT] && writes_down), .write_address(written_place), .write_data(down_made)
     );
     stereo_ram #(.BITS(WORD), .DEPTH(RING)) down_ring (
         .clk(clk), .read(go), .read_address(ring_behind), .read_data(down_behind),
         .write(go && valids[0] && !back_1), .write_address(ring_ahead_1), .write_data(down_ahead)
     );
 
-    // Messages along the line, in either direction, and down.
-    wire [WORD-1:0] along, down, along_message, down_message;
-    reg [WORD-1:0] along_3;
-    stereo_message #(.PARALLEL(PARALLEL), .GROUPS(GROUPS), .LEVELS(LEVELS)) along_path (
-        .clk(clk), .go(go), .valid(valids[1]), .first_group(first_group_2), .last_group(last_group_2),
-        .costs(along), .step(along_change == 0 ? 5'd18 : 5'd9),
-        .jump(along_change == 0 ? 7'd88 : along_change == 1 ? 7'd28 : 7'd16), .message(along_message)
+    // Paths along the line, in either direction, and down.
+    wire [5*PARALLEL-1:0] own, own_out;
+    wire [WORD-1:0] along, down, down_message;
+    reg [WORD-1:0] along_made;
+    stereo_along #(
+        .PARALLEL(PARALLEL), .GROUPS(GROUPS), .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .HOLDS(HOLDS)
+    ) along_path (
+        .clk(clk), .go(go), .valid(valids[1]), .valid_out(valids[OUT-1]), .group(group_2),
+        .last_group(last_group_2), .first_group(first_group_2), .is_first(first_2), .costs(own),
+        .step(along_change == 0 ? 5'd18 : 5'd9),
+        .jump(along_change == 0 ? 7'd88 : along_change == 1 ? 7'd28 : 7'd16), .costs_out(own_out),
+        .path(along)
     );
-    stereo_message #(.PARALLEL(PARALLEL), .GROUPS(GROUPS), .LEVELS(LEVELS)) down_path (
+    stereo_message #(.PARALLEL(PARALLEL), .GROUPS(GROUPS), .LEVELS(LEVELS), .HOLDS(HOLDS)) down_path (
         .clk(clk), .go(go), .valid(valids[1]), .first_group(first_group_2), .last_group(last_group_2),
         .costs(down_average), .step(down_change == 0 ? 5'd18 : 5'd9),
         .jump(down_change == 0 ? 7'd88 : down_change == 1 ? 7'd28 : 7'd16), .message(down_message)
@@ -195,8 +216,8 @@ module stereo_paths #(
     // The path to the left, as the second sweep left it.
     wire [WORD-1:0] leftward;
     stereo_ram #(.BITS(WORD), .DEPTH(PLACES)) left_memory (
-        .clk(clk), .read(go), .read_address(place_2), .read_data(leftward),
-        .write(go && valids[2] && writes_left_3), .write_address(place_3), .write_data(along_3)
+        .clk(clk), .read(go), .read_address(place_out), .read_data(leftward),
+        .write(go && valids[OUT] && writes_left), .write_address(written_place), .write_data(along_made)
     );
 
     genvar i;
@@ -216,18 +237,16 @@ module stereo_paths #(
             end else begin : one_of_many
                 assign disparity = group_2 * PARALLEL[7:0] + i[7:0];
             end
-            wire is_none = disparity >= disparities;
-            wire [6:0] own = {2'b0, average};
-            assign along[7*i +: 7] =
-                is_none ? NOT_SEARCHED : own + (first_2 ? 7'd0 : along_message[7*i +: 7]);
-            assign down[7*i +: 7] =
-                is_none ? NOT_SEARCHED : own + (begins_paths_2 ? 7'd0 : down_message[7*i +: 7]);
-            wire [8:0] sum = {2'b0, along_3[7*i +: 7]} + {2'b0, down_3[7*i +: 7]}
+            assign own[5*i +: 5] = disparity >= disparities ? NO_COST : average;
+            wire [4:0] cost_out = own_out[5*i +: 5];
+            assign down[7*i +: 7] = cost_out == NO_COST ? NOT_SEARCHED
+                : {2'b0, cost_out} + (begins_paths_out ? 7'd0 : down_message[7*i +: 7]);
+            wire [8:0] sum = {2'b0, along_made[7*i +: 7]} + {2'b0, down_made[7*i +: 7]}
                 + {2'b0, leftward[7*i +: 7]};
             always @(posedge clk) if (go) sums[8*i +: 8] <= sum[8] ? 8'd255 : sum[7:0];
         end
     endgenerate
-    always @(posedge clk) if (go) {along_3, down_3} <= {along, down};
+    always @(posedge clk) if (go) {along_made, down_made} <= {along, down};
 endmodule
 
 `default_nettype wire

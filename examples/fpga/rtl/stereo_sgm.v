@@ -46,8 +46,12 @@ module stereo_sgm #(
     localparam COLUMN_BITS = WIDTH < 250 ? 9 : $clog2(2 * WIDTH + 8);
     localparam ADDRESS_BITS = $clog2(WIDTH);
     localparam LEVELS = $clog2(PARALLEL);
-    // Clocks from the walk's token to the sums, and from the winner to the second best.
-    localparam AHEAD = 9;
+    // Whether there are groups enough for registers in the paths.
+    localparam HOLDS = GROUPS < 4 ? 0 : 1;
+    // Clocks from the features to the sums, from the walk's token to them, and from the winner to the second
+    // best.
+    localparam PATHS = HOLDS == 0 ? 4 : 6;
+    localparam AHEAD = 5 + PATHS;
     localparam LATER = SECOND_BEST == 0 ? 0 : GROUPS + LEVELS + 1;
     // Nothing is kept by the row that leaves a window.
     localparam CODE_BITS = $clog2(5 * WIDTH);
@@ -123,7 +127,7 @@ module stereo_sgm #(
     // The token beside the features.
     localparam TOKEN = 2 * COLUMN_BITS + GROUP_BITS + 11;
     reg [5*TOKEN-1:0] tokens;
-    reg [8:0] valids;
+    reg [AHEAD-1:0] valids;
     always @(posedge clk) begin
         if (go) begin
             tokens <= {
@@ -132,7 +136,7 @@ module stereo_sgm #(
             };
         end
         if (forgets) valids <= 0;
-        else if (go) valids <= {valids[7:0], valid && !drains};
+        else if (go) valids <= {valids[AHEAD-2:0], valid && !drains};
     end
     wire [COLUMN_BITS-1:0] at_5, ahead_5;
     wire [GROUP_BITS-1:0] group_5;
@@ -146,7 +150,7 @@ module stereo_sgm #(
     wire [8*PARALLEL-1:0] sums;
     stereo_paths #(
         .WIDTH(WIDTH), .DISPARITIES(DISPARITIES), .PARALLEL(PARALLEL), .GROUPS(GROUPS), .LEVELS(LEVELS),
-        .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS)
+        .HOLDS(HOLDS), .COLUMN_BITS(COLUMN_BITS), .GROUP_BITS(GROUP_BITS)
     ) paths (
         .clk(clk), .reset(forgets), .go(go), .disparities(disparities), .least(least),
         .read_column(tokens[4*TOKEN-1 -: COLUMN_BITS]), .valid(valids[4]), .column(at_5), .group(group_5),
@@ -157,22 +161,22 @@ module stereo_sgm #(
 
     // The token beside the sums.
     localparam LATE = 3 + COLUMN_BITS + GROUP_BITS;
-    reg [4*LATE-1:0] lates;
+    reg [PATHS*LATE-1:0] lates;
     always @(posedge clk) begin
         if (go) begin
             lates <= {
-                lates[3*LATE-1:0], inside_5 && !back_5, last_group_5, first_group_5, at_5, group_5
+                lates[(PATHS-1)*LATE-1:0], inside_5 && !back_5, last_group_5, first_group_5, at_5, group_5
             };
         end
     end
-    wire [LATE-1:0] late = lates[4*LATE-1 -: LATE];
+    wire [LATE-1:0] late = lates[PATHS*LATE-1 -: LATE];
 
     stereo_search #(
         .DISPARITIES(DISPARITIES), .PARALLEL(PARALLEL), .SECOND_BEST(SECOND_BEST), .COLUMN_BITS(COLUMN_BITS),
         .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER)
     ) search (
         .clk(clk), .forgets(forgets), .begins(begins), .disparities(disparities), .least(least),
-        .sums(sums), .valid(valids[8] && late[LATE-1]), .column(late[GROUP_BITS +: COLUMN_BITS]),
+        .sums(sums), .valid(valids[AHEAD-1] && late[LATE-1]), .column(late[GROUP_BITS +: COLUMN_BITS]),
         .group(late[GROUP_BITS-1:0]), .first_group(late[LATE-3]), .last_group(late[LATE-2]),
         // The second sweep brings the row's last winners out of the left-right check.
         .moves(valid && last_group), .is_pixel(has_winners && is_forth),

@@ -30,7 +30,7 @@ pub fn sample() -> Outcome {
     for block in [
         Block { width: 72, disparities: 32, parallel: 32, method: MethodName::Fast, second_best: false },
         Block { width: 72, disparities: 32, parallel: 8, method: MethodName::Block, second_best: true },
-        Block { width: 72, disparities: 32, parallel: 16, method: MethodName::Sgm, second_best: true },
+        Block { width: 72, disparities: 32, parallel: 8, method: MethodName::Sgm, second_best: true },
     ] {
         check(&block, 8)?;
     }

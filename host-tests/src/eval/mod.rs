@@ -6,14 +6,17 @@
 //! * [`DisparityFile`], [`truth`], [`mask`], [`confidence`]: the files.
 //! * [`Scene`]: folders of Middlebury 2014, KITTI, ETH3D and of this repository, told apart by what is in
 //!   them.
+//! * [`OpenCv`]: the matchers of OpenCV, to be beside.
 
 mod files;
 mod layout;
 mod measures;
+mod opencv;
 
 pub use files::{DisparityFile, confidence, mask, truth};
 pub use layout::Scene;
 pub use measures::Measures;
+pub use opencv::{OpenCv, OpenCvScene};
 
 use std::path::{Path, PathBuf};
 

@@ -136,9 +136,8 @@ fn folders_of_the_public_benchmarks() {
     assert_eq!(csv.lines().last(), Some("mean,75.00,66.67,66.67,33.33,33.33,33.33,50.00,2.000,"));
 }
 
-#[test]
-fn scenes_are_matched_as_match_does() {
-    let bench = Bench::new();
+/// A folder with one scene, `squares`, and its truth.
+fn squares(bench: &Bench) -> (String, Vec<f32>) {
     let (left, right) = pair();
     let truth: Vec<f32> = (0..WIDTH * HEIGHT)
         .map(|at| {
@@ -147,11 +146,17 @@ fn scenes_are_matched_as_match_does() {
             if is_near { NEAR as f32 } else { FAR as f32 }
         })
         .collect();
-    put(&bench, "scenes/squares/left.png", &encode(&left, ImageFormat::Png));
-    put(&bench, "scenes/squares/right.png", &encode(&right, ImageFormat::Png));
-    put(&bench, "scenes/squares/gt.png", &steps(&truth, WIDTH));
-    put(&bench, "scenes/squares/meta.json", br#"{"disparities": 32}"#);
-    let scenes = bench.path("scenes").display().to_string();
+    put(bench, "scenes/squares/left.png", &encode(&left, ImageFormat::Png));
+    put(bench, "scenes/squares/right.png", &encode(&right, ImageFormat::Png));
+    put(bench, "scenes/squares/gt.png", &steps(&truth, WIDTH));
+    put(bench, "scenes/squares/meta.json", br#"{"disparities": 32}"#);
+    (bench.path("scenes").display().to_string(), truth)
+}
+
+#[test]
+fn scenes_are_matched_as_match_does() {
+    let bench = Bench::new();
+    let (scenes, _) = squares(&bench);
     let here = evaluated(&["--scenes", &scenes, "--method", "block"]);
     assert_eq!(here["scenes"][0]["disparities"], 32);
     assert!(here["scenes"][0]["confidence_from_oracle"].is_number());
@@ -161,6 +166,54 @@ fn scenes_are_matched_as_match_does() {
     let out = bench.path("out").display().to_string();
     let there = evaluated(&["--found", &out, "--truth", &scenes]);
     assert_eq!(here["mean"], there["mean"]);
+}
+
+/// A program stands in for a Python that has OpenCV: it looks for the images, and its answers are the truth
+/// for one matcher, and a pixel more for the other.
+#[cfg(unix)]
+#[test]
+fn opencv_is_beside() {
+    use std::os::unix::fs::PermissionsExt;
+    let bench = Bench::new();
+    let (scenes, truth) = squares(&bench);
+    let of_width = |add: f32| {
+        let mut file = Vec::new();
+        let values: Vec<_> = truth.iter().map(|px| px + add).collect();
+        pfm::write(&mut file, WIDTH as usize, &values).expect("memory takes all");
+        file
+    };
+    put(&bench, "python-StereoBM.pfm", &of_width(0.0));
+    put(&bench, "python-StereoSGBM.pfm", &of_width(1.5));
+    let python = put(
+        &bench,
+        "python",
+        b"#!/bin/sh\n[ \"$1\" = -c ] || exit 2\ncase $2 in 'import cv2'*) echo 9.8.7; exit;; esac\n\
+          folder=$3; shift 3\necho \"$@\" > \"$0.words\"\n\
+          test -s \"$folder/$1-left.pgm\" -a -s \"$folder/$1-right.pgm\" || exit 3\n\
+          for name in StereoBM StereoSGBM; do cp \"$0-$name.pfm\" \"$folder/$1-$name.pfm\"; done\n",
+    );
+    fs::set_permissions(&python, fs::Permissions::from_mode(0o755)).expect("the owner may");
+    let arguments = ["--scenes", &scenes, "--min-disparity", "2", "--method", "block", "--opencv", &python];
+    let all = evaluated(&arguments);
+    assert_eq!(text(&fs::read(format!("{python}.words")).expect("a file")), "0 32 2\n");
+    assert!(all["mean"]["missed"].as_f64().is_some_and(|missed| missed < 0.2), "{all}");
+    let beside = all["beside"].as_array().expect("a list");
+    assert_eq!(beside.len(), 2);
+    for (beside, (program, bad1)) in beside.iter().zip([("StereoBM", 0.0), ("StereoSGBM", 1.0)]) {
+        assert_eq!(beside["program"], format!("OpenCV 9.8.7 {program}"));
+        for measures in [&beside["mean"], &beside["scenes"][0]] {
+            assert_eq!((&measures["bad1"], &measures["missed"]), (&bad1.into(), &0.0.into()), "{program}");
+        }
+    }
+    let table = stereo([&["eval"], arguments.as_slice()].concat());
+    let table = text(&table.stdout);
+    let line = |name: &str| table.lines().find(|line| line.starts_with(name)).map(str::to_owned);
+    assert!(line("OpenCV 9.8.7 StereoSGBM: squares").is_some_and(|line| line.contains(" 100.00")), "{table}");
+    assert!(table.contains("uniquenessRatio 10"), "{table}");
+
+    fs::write(&python, "#!/bin/sh\necho 'a trace' >&2\necho 'no module cv2' >&2\nexit 1\n").expect("a file");
+    let line = format!("--opencv {python}: does not run OpenCV (no module cv2); install it (pip install");
+    bench.refused(&["eval", "--scenes", &scenes, "--opencv", &python], &line);
 }
 
 #[test]
@@ -189,6 +242,8 @@ fn what_cannot_be_compared_is_named() {
     refused(&["--scenes", &folder], "empty: holds no scene with a truth");
     refused(&["--scenes", &scenes], "im0.png");
     refused(&["--scenes", &scenes, "--found", &found], "--found");
+    refused(&["--scenes", &scenes, "--opencv", "no-such-python"], "--opencv no-such-python");
+    refused(&["--found", &found, "--truth", &truth, "--opencv"], "--opencv");
     refused(&["--found", &found, "--truth", &scenes, "--mask", &found], "--mask");
     refused(&["--found", &found, "--truth", &truth, "--found-scale", "0"], "--found-scale");
     refused(&["--found", &found, "--truth", &truth, "--disparities", "64"], "--disparities");

@@ -1,5 +1,8 @@
 //! `stereo eval`: results of any program, or of this one, beside a known truth.
 
+mod rival;
+mod table;
+
 use crate::failure::Failure;
 use crate::frame::{Matched, matched};
 use crate::input::Pair;
@@ -9,19 +12,19 @@ use crate::results::depth_unit;
 use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print};
 use clap::Args;
 use image::imageops;
-use serde::Serialize;
-use std::fmt::Write;
+use rival::Rival;
 use std::path::{Path, PathBuf};
 use stereopsis_host::calibration::Calibration;
-use stereopsis_host::command_line::one_line;
 use stereopsis_host::eval::{DisparityFile, Measures, Scene, confidence, truth};
 use stereopsis_host::pfm::FloatMap;
+use table::{Evaluated, Evaluation, Scenes};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Examples:
   stereo eval --found out/disparity.pfm --truth disp0.pfm --mask mask0nocc.png
   stereo eval --found results --truth MiddEval3/trainingQ
   stereo eval --scenes kitti/training --method sgm --disparities auto --csv kitti.csv
+  stereo eval --scenes MiddEval3/trainingQ --opencv
 
 Disparities are PFM (px) or PNG (px x 256, 0 where there is none). Folders are those of Middlebury 2014 \
                            (SCENE/disp0.pfm), ETH3D (SCENE/disp0GT.pfm), KITTI (disp_occ_0/000000_10.png) \
@@ -67,6 +70,11 @@ pub struct EvalArgs {
     #[arg(long, value_name = "M", conflicts_with = "found", value_parser = min_disparity,
         allow_negative_numbers = true)]
     min_disparity: Option<u16>,
+    /// Runs OpenCV's StereoBM and StereoSGBM on the same scenes, by a Python that has it: python3 where none
+    /// is named
+    #[arg(long, value_name = "PYTHON", num_args = 0..=1, default_missing_value = "python3",
+        conflicts_with = "found")]
+    opencv: Option<PathBuf>,
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
@@ -84,36 +92,25 @@ fn scale(text: &str) -> Result<f64, &'static str> {
     value.ok_or("a number from 0.001 to 65536 is needed")
 }
 
-/// How right a scene is. Names are those of `--json`.
-#[derive(Serialize)]
-struct Evaluated {
-    scene: String,
-    /// What was searched, and how long the matching took, where it was done here.
-    disparities: Option<u16>,
-    time_ms: Option<f64>,
-    #[serde(flatten)]
-    measures: Measures,
-}
-
-/// What is printed.
-#[derive(Serialize)]
-struct Evaluation {
-    scenes: Vec<Evaluated>,
-    mean: Measures,
-}
-
 pub fn run(args: &EvalArgs) -> Result<(), Failure> {
     let csv = args.csv.as_deref().map(|path| Place::of("--csv", path)).transpose()?;
+    let mut beside = Vec::new();
     let scenes = match (&args.scenes, args.found.as_deref().zip(args.truth.as_deref())) {
         (Some(folder), _) => {
-            Scene::all(folder)?.iter().map(|scene| by_matching(args, scene)).collect::<Result<Vec<_>, _>>()?
+            let all = Scene::all(folder)?;
+            let mut rival = args.opencv.as_deref().map(Rival::new).transpose()?;
+            let matched = |scene| by_matching(args, scene, rival.as_mut());
+            let scenes = all.iter().map(matched).collect::<Result<Vec<_>, _>>()?;
+            if let Some(rival) = rival {
+                beside = rival.evaluated(&all)?;
+            }
+            scenes
         }
         (None, Some((found, truth))) if truth.is_dir() => of_folders(args, found, truth)?,
         (None, Some((found, truth))) => vec![of_files(args, found, truth)?],
         (None, None) => return Err(Failure::new("--found: is missing; give it and --truth, or --scenes")),
     };
-    let measures: Vec<_> = scenes.iter().map(|scene| scene.measures).collect();
-    let evaluation = Evaluation { mean: Measures::mean(&measures), scenes };
+    let evaluation = Evaluation { own: Scenes::new(scenes), beside };
     if let Some(place) = csv {
         let bytes = evaluation.csv()?;
         place.write(|out| out.write_all(&bytes), None)?;
@@ -176,7 +173,7 @@ fn compared(
 }
 
 /// A scene that is matched here, as `match` does it.
-fn by_matching(args: &EvalArgs, scene: &Scene) -> Result<Evaluated, Failure> {
+fn by_matching(args: &EvalArgs, scene: &Scene, rival: Option<&mut Rival>) -> Result<Evaluated, Failure> {
     let truth = scene.read_truth()?;
     let [left, right] = &scene.images;
     let mut pair = Pair::open(left, right)?;
@@ -199,6 +196,9 @@ fn by_matching(args: &EvalArgs, scene: &Scene) -> Result<Evaluated, Failure> {
     search.check(&args.method, width, height).map_err(named)?;
     let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
     let Look { config, .. } = look(&search, &args.method, [&left, &right], None, None).map_err(named)?;
+    if let Some(rival) = rival {
+        rival.take([&left, &right], [config.disparities, config.min_disparity])?;
+    }
     let Matched { config, outcome, .. } = matched(&args.method, &args.balance, config, &mut pair.camera)?;
     let map = &outcome.map;
     let measures = Measures::of(&map.pixels(), &truth.values, Some(&map.confidence)).unwrap_or_default();
@@ -208,56 +208,4 @@ fn by_matching(args: &EvalArgs, scene: &Scene) -> Result<Evaluated, Failure> {
         time_ms: Some(outcome.time_ms),
         measures,
     })
-}
-
-/// The columns of a table: names, digits behind the point, and values; shares are in percent.
-type Column = (&'static str, usize, fn(&Measures) -> Option<f64>);
-
-const COLUMNS: [Column; 9] = [
-    ("density", 2, |m| Some(100.0 * m.score.density)),
-    ("bad0.5", 2, |m| Some(100.0 * m.bad05)),
-    ("bad1", 2, |m| Some(100.0 * m.bad1)),
-    ("bad2", 2, |m| Some(100.0 * m.score.bad2)),
-    ("bad4", 2, |m| Some(100.0 * m.bad4)),
-    ("D1", 2, |m| Some(100.0 * m.d1)),
-    ("missed", 2, |m| Some(100.0 * m.score.missed)),
-    ("EPE,px", 3, |m| Some(m.epe_px)),
-    ("unsure", 2, |m| m.confidence_from_oracle.map(|share| 100.0 * share)),
-];
-
-impl Evaluation {
-    /// The scenes and their mean by name, each with the cells of all columns.
-    fn rows(&self) -> impl Iterator<Item = (&str, Vec<String>)> {
-        let scenes = self.scenes.iter().map(|scene| (scene.scene.as_str(), &scene.measures));
-        scenes.chain([("mean", &self.mean)]).map(|(name, measures)| {
-            let cell = |&(_, digits, of): &Column| of(measures).map(|value| format!("{value:.digits$}"));
-            (name, COLUMNS.iter().map(|column| cell(column).unwrap_or_default()).collect())
-        })
-    }
-
-    fn table(&self) -> String {
-        let longest = self.rows().map(|(name, _)| one_line(name).chars().count()).max().unwrap_or(0).max(5);
-        let mut text = format!("{:<longest$}", "scene");
-        for (name, ..) in COLUMNS {
-            let _ = write!(text, "{name:>9}");
-        }
-        for (name, cells) in self.rows() {
-            let _ = write!(text, "\n{:<longest$}", one_line(name));
-            for cell in cells {
-                let _ = write!(text, "{cell:>9}");
-            }
-        }
-        text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 \
-                 px off), unsure of the\nway from the best order of the answers to a random one\n";
-        text
-    }
-
-    fn csv(&self) -> Result<Vec<u8>, Failure> {
-        let mut table = csv::Writer::from_writer(Vec::new());
-        table.write_record(["scene"].into_iter().chain(COLUMNS.map(|(name, ..)| name)))?;
-        for (name, cells) in self.rows() {
-            table.write_record([name.to_owned()].into_iter().chain(cells))?;
-        }
-        table.into_inner().map_err(|e| Failure::new(e.to_string()))
-    }
 }

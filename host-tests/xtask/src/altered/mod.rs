@@ -12,10 +12,10 @@ use crate::firmware::tables::{Part, splice};
 use crate::steps::{Failure, Outcome};
 use clap::Args;
 use image::GrayImage;
-use opencv::{MATCHERS, OpenCv};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::matching::{Config, Filter};
+use stereopsis_host::eval::{EvalError, OpenCv, OpenCvScene};
 use stereopsis_host::real::{Alteration, RealScene, Score};
 use stereopsis_host::run::{MemoryPair, MethodName, measure_balance, measure_noise, run as match_pair};
 use table::Column;
@@ -50,16 +50,16 @@ pub fn run(arguments: &Arguments) -> Outcome {
     let out = arguments.out.as_deref().map(prepared).transpose()?;
     let scenes = RealScene::all(&arguments.data).map_err(|e| Failure::new(format!("--data: {e}")))?;
     let opencv =
-        if arguments.without_opencv { None } else { Some(OpenCv::find(arguments.python.as_deref())?) };
+        if arguments.without_opencv { None } else { Some(opencv::find(arguments.python.as_deref())?) };
     let columns = columns(&scenes, opencv.as_ref())?;
     let version = opencv.as_ref().map(|opencv| opencv.version.as_str());
-    let page = table::page(&columns, scenes.len(), version, opencv::PARAMETERS);
+    let page = table::page(&columns, scenes.len(), version, OpenCv::PARAMETERS);
     println!("{page}");
     if let Some((file, path)) = out {
         keep(file, path, &page).map_err(|e| Failure::new(format!("--out: {}: {e}", path.display())))?;
     }
     if arguments.readme {
-        let note = format!("OpenCV {}: {}.", version.unwrap_or_default(), opencv::PARAMETERS);
+        let note = format!("OpenCV {}: {}.", version.unwrap_or_default(), OpenCv::PARAMETERS);
         splice(&PART, &format!("{}\n{note}\n", table::of(&columns, |score| score.missed)))?;
     }
     Ok(())
@@ -84,7 +84,7 @@ fn keep(mut file: NamedTempFile, path: &Path, text: &str) -> std::io::Result<()>
 
 /// The scores of OpenCV's matchers, if it is there, and of all methods.
 fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>> {
-    let theirs = if opencv.is_some() { MATCHERS.as_slice() } else { &[] };
+    let theirs = if opencv.is_some() { OpenCv::MATCHERS.as_slice() } else { &[] };
     let names = theirs.iter().map(|name| format!("OpenCV {name}"));
     let names = names.chain(MethodName::ALL.map(|method| format!("`{method}`")));
     let mut columns: Vec<_> = names.map(|name| Column { name, scores: Vec::new() }).collect();
@@ -104,11 +104,14 @@ fn columns(scenes: &[RealScene], opencv: Option<&OpenCv>) -> Outcome<Vec<Column>
             }
         }
         if let Some(opencv) = opencv {
-            let names: Vec<_> = scenes.iter().map(|scene| (scene.name.as_str(), scene.disparities)).collect();
-            opencv.run(folder.path(), &names)?;
+            let searched =
+                scenes.iter().map(|scene| OpenCvScene { name: &scene.name, search: [scene.disparities, 0] });
+            let failed = |e: EvalError| Failure::new(e.to_string());
+            opencv.run(folder.path(), &searched.collect::<Vec<_>>()).map_err(failed)?;
             for (scores, matcher) in of_opencv.iter_mut().zip(theirs) {
                 for scene in scenes {
-                    scores.push(scored(scene, opencv::answers(folder.path(), &scene.name, matcher)?)?);
+                    let found = OpenCv::answers(folder.path(), &scene.name, matcher).map_err(failed)?;
+                    scores.push(scored(scene, found.values)?);
                 }
             }
         }

@@ -8,9 +8,9 @@
 // for each column three rows of the left image.
 //
 // A token has the column's features; a clock later its costs are made, two clocks later they are there and
-// its paths begin. With four groups and more, these take two registers more than with fewer (HOLDS): three or
-// five clocks later are its paths, a clock after that its sums. Messages down are made of costs two columns to
-// both sides in the row above: those are read three columns ahead.
+// its paths begin. With four groups and more, these have two registers that fewer have not (HOLDS): three
+// or five clocks later its paths are there, a clock after that its sums. Messages down are made of costs two
+// columns to both sides in the row above: those are read three columns ahead.
 `default_nettype none
 
 module stereo_paths #(

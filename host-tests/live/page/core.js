@@ -120,9 +120,9 @@ class Core {
     return this.answer;
   }
 
-  // Matches; the milliseconds. Throws the core's line.
-  run() {
-    const time = this.exports.run();
+  // Matches; the milliseconds. Deviations are told of a row alone, or of all. Throws the core's line.
+  run(sigmaRow = -1) {
+    const time = this.exports.run(sigmaRow);
     this.renew();
     if (time < 0) throw new Error(this.message);
     return time;

@@ -4,6 +4,8 @@ Object.assign(state,
   { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, timeMs: 0, fault: null });
 let measured = 0;
 let isDue = false;
+let toldAt = 0;
+const BETWEEN_FIGURES_MS = 500;
 
 // Says what is wrong, in a line; nothing when all is well.
 function complain(error) {
@@ -47,25 +49,36 @@ function run() {
   try {
     writeSettings();
     state.settings = Int32Array.from(state.core.settings);
-    markOthers();
-    state.timeMs = state.core.run();
+    // A frame tells the deviations where the cursor is: those of all pixels take a third of its time.
+    state.timeMs = state.core.run(moving.isOn ? cursor.y : -1);
     complain(state.fault);
     tellDepth();
   } catch (error) {
     complain(error);
     return;
   }
+  show();
+  if (isPointed) tellPixel();
+  // Of what moves, figures that can be read.
+  if (moving.isOn && performance.now() - toldAt < BETWEEN_FIGURES_MS) return;
+  toldAt = performance.now();
+  tellFigures();
+}
+
+// Says how long the frame took, and what it has.
+function tellFigures() {
+  markOthers();
   const { disparity } = state.planes;
   let answers = 0;
   for (let i = 0; i < disparity.length; i += 1) answers += disparity[i] === NO_ANSWER ? 0 : 1;
   const share = ((100 * answers) / disparity.length).toFixed(1);
   const noise = state.noise === "auto" ? `, noise ${NOISES[measured]} as measured` : "";
   const rate = `${(1000 / state.timeMs).toFixed(0)} a second, kernel ${state.core.kernel}`;
+  const shown = moving.isOn && moving.rate > 0
+    ? `; ${moving.rate.toFixed(0)} frames a second are shown` : "";
   byId("figures").textContent = `${state.timeMs.toFixed(1)} ms a frame on one thread of this machine `
-    + `(${rate}); ${share} % answered${noise}.`;
+    + `(${rate}); ${share} % answered${noise}${shown}.`;
   showWork(state);
-  show();
-  if (isPointed) tellPixel();
 }
 
 // Marks the checks and penalties that are not the filter's.
@@ -208,6 +221,8 @@ const moving = new Moving(takeFrame, (error) => {
 });
 
 function stopMoving() {
+  // The deviations of all pixels, of the frame that stays.
+  if (moving.isOn) later();
   moving.stop();
   sayMoving(false);
 }

@@ -9,16 +9,17 @@ class Eye {
     this.canvas = new OffscreenCanvas(2, 2);
   }
 
-  // A frame's pixels; where it is halved, an odd last column is of neither picture.
-  frame(name, isHalved) {
+  // The pictures of a frame: one, or the two halves of it, of which an odd last column is in neither.
+  frame(name, count) {
     const { videoWidth, videoHeight: height } = this.video;
-    const width = isHalved ? videoWidth - (videoWidth % 2) : videoWidth;
-    if (this.canvas.width !== width || this.canvas.height !== height || !this.context) {
-      [this.canvas.width, this.canvas.height] = [width, height];
+    const width = Math.floor(videoWidth / count);
+    if (this.canvas.width !== count * width || this.canvas.height !== height || !this.context) {
+      [this.canvas.width, this.canvas.height] = [count * width, height];
       this.context = this.canvas.getContext("2d", { willReadFrequently: true });
     }
     this.context.drawImage(this.video, 0, 0);
-    return { name, width, height, pixels: this.context.getImageData(0, 0, width, height).data };
+    const pixels = (place) => this.context.getImageData(place * width, 0, width, height).data;
+    return Array.from({ length: count }, (_, place) => ({ name, width, height, pixels: pixels(place) }));
   }
 
   stop() {
@@ -29,11 +30,20 @@ class Eye {
   }
 }
 
+// Frames that the rate is told of, at most.
+const TIMED = 31;
+
 class Moving {
   // `show` is given every pair; `end` is called with what went wrong, or nothing.
   constructor(show, end) {
     this.eyes = [new Eye(), new Eye()];
-    [this.show, this.end, this.isOn, this.isTwo] = [show, end, false, false];
+    [this.show, this.end, this.isOn, this.isTwo, this.times] = [show, end, false, false, []];
+  }
+
+  // Frames in a second, of the last ones that were shown: how fast all of the page is, not the matcher alone.
+  get rate() {
+    const spans = this.times.length - 1;
+    return spans < 1 ? 0 : (1000 * spans) / (this.times[spans] - this.times[0]);
   }
 
   // Plays a file.
@@ -89,7 +99,7 @@ class Moving {
       this.stop();
       throw new Error(fault);
     }
-    this.isOn = true;
+    [this.isOn, this.times] = [true, []];
     this.next(names);
   }
 
@@ -98,6 +108,7 @@ class Moving {
     this.eyes[0].video.requestVideoFrameCallback(() => {
       if (!this.isOn) return;
       try {
+        this.times = [...this.times.slice(1 - TIMED), performance.now()];
         this.show(this.pair(names));
         this.next(names);
       } catch (error) {
@@ -110,10 +121,10 @@ class Moving {
   // The pair that is seen now.
   pair(names) {
     if (!this.isTwo) {
-      const [left, right] = halves(this.eyes[0].frame(names[0], true));
+      const [left, right] = this.eyes[0].frame(names[0], 2);
       return { left, right, isOne: true, isMoving: true };
     }
-    const [left, right] = this.eyes.map((eye, i) => eye.frame(names[i], false));
+    const [left, right] = this.eyes.flatMap((eye, i) => eye.frame(names[i], 1));
     checkSizes(left, right);
     return { left, right, isOne: false, isMoving: true };
   }

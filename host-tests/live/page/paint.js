@@ -36,6 +36,9 @@ function ends(numbers, none) {
   return [quantile(0.02), quantile(0.98)];
 }
 
+// The colour of each number, of those that are painted.
+const colourOf = new Uint32Array(65536);
+
 // Paints numbers in the colours of the ramp; `isNear` says whether large ones are near.
 function paintNumbers(words, numbers, none, isNear) {
   const found = ends(numbers, none);
@@ -45,10 +48,12 @@ function paintNumbers(words, numbers, none, isNear) {
   }
   const [low, high] = found;
   const scale = 255 / Math.max(high - low, 1);
-  for (let i = 0; i < words.length; i += 1) {
-    const step = Math.min(Math.max(Math.round((numbers[i] - low) * scale), 0), 255);
-    words[i] = numbers[i] === none ? BLACK : RAMP_WORDS[isNear ? step : 255 - step];
+  for (let number = 0; number < colourOf.length; number += 1) {
+    const step = Math.min(Math.max(Math.round((number - low) * scale), 0), 255);
+    colourOf[number] = RAMP_WORDS[isNear ? step : 255 - step];
   }
+  colourOf[none] = BLACK;
+  for (let i = 0; i < words.length; i += 1) words[i] = colourOf[numbers[i]];
   return found;
 }
 

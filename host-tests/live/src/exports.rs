@@ -112,6 +112,7 @@ impl Whole {
                 disparities: from_raw_parts_mut(self.place(4).cast(), pixels),
                 depths: from_raw_parts_mut(self.place(6).cast(), pixels),
                 sigmas: from_raw_parts_mut(self.place(8).cast(), pixels),
+                sigma_row: None,
             }
         }
     }
@@ -249,11 +250,12 @@ extern "C" fn measure() {
     session().measure(&planes);
 }
 
-/// Matches; the milliseconds, or less than 0 with a message.
+/// Matches; the milliseconds, or less than 0 with a message. Deviations are told of one row, or of all where
+/// that is less than 0.
 #[unsafe(no_mangle)]
-extern "C" fn run() -> f64 {
+extern "C" fn run(sigma_row: i32) -> f64 {
     let whole = whole();
-    let mut planes = whole.planes();
+    let mut planes = Planes { sigma_row: u16::try_from(sigma_row).ok(), ..whole.planes() };
     session().run(&mut planes, clock).unwrap_or(-1.0)
 }
 

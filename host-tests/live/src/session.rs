@@ -43,6 +43,8 @@ pub struct Planes<'a> {
     pub depths: &'a mut [u16],
     /// As [`Row::sigma_px`], px; 0 where there is no answer.
     pub sigmas: &'a mut [f32],
+    /// The one row whose `sigmas` are told, a third of a frame's time for all of them; none for every row.
+    pub sigma_row: Option<u16>,
 }
 
 impl<'a> Planes<'a> {
@@ -70,8 +72,10 @@ impl<'a> Planes<'a> {
             *to = from.bits();
         }
         confidences.copy_from_slice(row.confidences());
-        for (x, to) in sigmas.iter_mut().enumerate() {
-            *to = row.sigma_px(x).unwrap_or(0.0);
+        if self.sigma_row.is_none_or(|told| told == row.index()) {
+            for (x, to) in sigmas.iter_mut().enumerate() {
+                *to = row.sigma_px(x).unwrap_or(0.0);
+            }
         }
     }
 }

@@ -4,7 +4,7 @@ use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
 use super::page::{COLOURS, LivePage, failed, hold, url_of};
 use super::program::as_the_program;
-use super::{cameras, plan, report};
+use super::{cameras, plan, report, video};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -80,6 +80,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     plan::it_is_that_of_the_program(&mut page, stereo)?;
     cameras::a_camera_is_matched_frame_by_frame(&mut page)?;
     cameras::two_cameras_are_matched_frame_by_frame(&mut page)?;
+    video::a_video_is_matched_frame_by_frame(&mut page, folder)?;
     let requests = page.requests();
     hold(requests == [served.url.as_str()], || format!("the page asks for {requests:?}"))?;
     let thrown = page.thrown();

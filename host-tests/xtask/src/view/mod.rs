@@ -4,7 +4,8 @@
 //!   twin.
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
 //!   do, a step of the tests; [`faults`]: what it has to refuse. [`program`]: what the program says to the
-//!   page's command line; [`plan`], [`cameras`]: parts of the page; [`report`]: the report of a run.
+//!   page's command line; [`plan`], [`cameras`], [`video`]: parts of the
+//!   page; [`report`]: the report of a run.
 
 pub mod browser;
 mod cameras;
@@ -14,6 +15,7 @@ mod page;
 mod plan;
 mod program;
 mod report;
+mod video;
 
 pub use check::sample;
 

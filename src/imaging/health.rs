@@ -35,6 +35,9 @@ pub struct PairMonitor {
     wrong_way: u32,
 }
 
+/// Largest gain by which lines are made equally bright, in 256ths.
+const MOST_GAIN: u64 = 16 * 256;
+
 #[derive(Clone, Copy, Debug)]
 struct Side {
     histogram: Histogram,
@@ -102,7 +105,12 @@ impl PairMonitor {
             return;
         }
         // A point at u in the left picture is at u - d in the right one.
-        let (right_way, wrong_way) = (self.least(left, right), self.least(right, left));
+        // The two cameras expose on their own: the right line counts as if it were as bright as the left one.
+        let sum = |line: &[u8]| line.iter().map(|&grey| u32::from(grey)).sum::<u32>();
+        let gain = u64::from(sum(left)) * 256;
+        let gain = gain.checked_div(sum(right).into()).unwrap_or(256).min(MOST_GAIN) as u32;
+        let right_way = self.least(left, right, [256, gain]);
+        let wrong_way = self.least(right, left, [gain, 256]);
         // Nearly equal fits say nothing: a line without texture, or a scene far away.
         if right_way.saturating_mul(5) < wrong_way.saturating_mul(4) {
             self.right_way += 1;
@@ -111,16 +119,18 @@ impl PairMonitor {
         }
     }
 
-    /// Least mean absolute difference of `a` and `b` shifted right, in 256ths, over disparities from 1 on.
-    fn least(&self, a: &[u8], b: &[u8]) -> u32 {
+    /// Least mean absolute difference of `a` and `b` shifted right, each times its gain in 256ths, over
+    /// disparities from 1 on; in 256ths.
+    fn least(&self, a: &[u8], b: &[u8], gains: [u32; 2]) -> u32 {
         let tried = 1..=usize::from(self.most_disparity);
         let fit = |d: usize| {
             let pairs = a.iter().skip(d).zip(b);
             let (sum, count) = pairs.fold((0_u32, 0_u32), |(sum, count), (a, b)| {
-                (sum.saturating_add(u32::from(a.abs_diff(*b))), count + 1)
+                let [a, b] = [u32::from(*a) * gains[0], u32::from(*b) * gains[1]];
+                (sum.saturating_add(a.abs_diff(b)), count + 1)
             });
             // A few columns fit by chance.
-            if count < 32 { u32::MAX } else { (u64::from(sum) * 256 / u64::from(count)) as u32 }
+            if count < 32 { u32::MAX } else { sum / count }
         };
         tried.map(fit).min().unwrap_or(u32::MAX)
     }

@@ -1,5 +1,6 @@
 //! `cargo xtask firmware --all`: every core, method and size, two at a time.
 
+use super::call_graph::CallGraph;
 use super::checksums;
 use super::frame::{self, MOST_STACK};
 use super::measured::{Measured, spread};
@@ -105,6 +106,9 @@ fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Measured> {
     let scene = Pictures::of_scene(Scene { width: program.width, height: program.height })?;
     let frame = frame::run(&built, &scene, true)?;
     println!("{}", frame.summary());
+    if [M4, M7].contains(&program.board) {
+        hold_stack(&built, frame.stack)?;
+    }
     let mut spread = Vec::new();
     if program.width == SPREAD_WIDTH {
         spread = spread_over(&built, real)?;
@@ -112,6 +116,20 @@ fn one(program: Program, real: &[(String, Pictures)]) -> Outcome<Measured> {
     }
     let checksums = if program.board == M0 { Vec::new() } else { checksums::on_core(&built, real)? };
     Ok(Measured { frame, spread, checksums })
+}
+
+/// Holds the stack that a program's calls can take to the limit; less than what was in use it cannot be.
+fn hold_stack(Built { program, elf }: &Built, used: u64) -> Outcome {
+    let deepest = CallGraph::of(elf)?.deepest("Reset")?;
+    let (bytes, names) = (deepest.bytes, deepest.names());
+    if (used..=MOST_STACK).contains(&bytes) {
+        println!("{program}: its calls take {bytes} bytes of stack at most");
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{program}: its calls take {bytes} bytes of stack, {used} were in use, at most {MOST_STACK} may be: \
+         {names}"
+    )))
 }
 
 /// Instructions of a frame of nothing, of noise, of stripes and of a real picture where there is one.

@@ -2,8 +2,8 @@
 //!
 //! * [`arguments`]: what is asked for. [`program`]: one build of the example. [`emulate`]: QEMU. [`log`]: the
 //!   firmware's log as text.
-//! * [`frame`]: one frame on one core, held to the host. [`one_frame`]: with the files that are written of
-//!   it, [`summary`].
+//! * [`frame`]: one frame on one core, held to the host; [`call_graph`]: the stack that its program can take;
+//!   [`one_frame`]: with the files that are written of it, [`summary`].
 //! * [`all`]: every core, method and size; [`tables`] of it for docs/performance.md; [`checksums`] on real
 //!   pictures; [`measured`]: what they are made of.
 //! * [`stage_rows`]: the rows of a frame's stages, held to the twins.
@@ -25,6 +25,7 @@ mod arguments;
 mod as_match;
 mod awkward;
 mod bundle;
+mod call_graph;
 mod checksums;
 mod drive;
 pub mod emulate;

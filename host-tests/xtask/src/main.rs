@@ -6,6 +6,7 @@
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `fuzz` looks for inputs that break a promise.
 //! * `miri` runs what is `unsafe` and no assembly under an interpreter that sees undefined behaviour.
+//! * `mutants` changes the code and says which changes no test sees.
 //! * `soak` runs thousands of frames of a camera with every fault.
 //! * `view` builds the live page's module and shows the page.
 //! * `book` writes the pages of docs/ as a book.
@@ -19,7 +20,7 @@
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
 //! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`book`], [`package`] and [`readme`] are ten
 //! of them.
-//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`] and [`soak`] time.
+//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`], [`mutants`] and [`soak`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -39,6 +40,7 @@ mod fuzz;
 mod growth;
 mod header;
 mod miri;
+mod mutants;
 mod package;
 mod packages;
 mod parallel;
@@ -78,6 +80,8 @@ enum Chore {
     Fuzz(fuzz::Arguments),
     /// Runs what is unsafe and no assembly under Miri, for a 64-bit and a 32-bit processor.
     Miri,
+    /// Changes the code, a place at a time, and says which changes no test sees.
+    Mutants(mutants::Arguments),
     /// Runs thousands of frames of a camera with every fault, and holds each row to the frame without one.
     Soak(soak::Arguments),
     /// Builds the core for browsers and runs `stereo view` with it.
@@ -116,8 +120,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, miri, soak, view, book, altered, \
-                        c, cross, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, mutants, soak, view, book, \
+                        altered, c, cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -130,6 +134,7 @@ fn main() -> ExitCode {
         Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Fuzz(arguments) => fuzz::run(&arguments),
         Chore::Miri => miri::run(),
+        Chore::Mutants(arguments) => mutants::run(&arguments),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),
         Chore::Book(arguments) => book::run(&arguments),

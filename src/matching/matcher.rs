@@ -10,10 +10,10 @@ use super::memory::workspace::Finished;
 use super::memory::{Bytes, Memory, Parts, Rows5};
 use super::method::{Frame, Method};
 use super::row::Row;
-use super::stages::{self, mask, words};
+use super::stages::{self, mask};
 #[cfg(feature = "trace")]
 use super::trace::StageTrace;
-use crate::matching::memory::slices::{part_mut, split_mut};
+use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
 
 /// Bytes of matcher state beside the arrays: counters, the configuration, padding.
@@ -31,7 +31,7 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     texture: [u16; W],
     textured: [u8; W],
     edges: [u8; W],
-    open: [u8; W],
+    blocks: [u8; W],
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
     support: [u16; W],
@@ -91,7 +91,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: [0; W],
             textured: [0; W],
             edges: [0; W],
-            open: [0; W],
+            blocks: [0; W],
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             support: [0; W],
@@ -263,7 +263,6 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     pub(super) fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
         let Parts { codes, columns, workspace } = self.memory.parts(width);
-        let (open, repeats) = split_mut(&mut self.open, words(width).min(W));
         let columns = part_mut(columns, usize::from(self.columns_begin)..);
         let columns = part_mut(columns, ..S::Memory::<W, D>::column_bytes(width, stride));
         Frame {
@@ -277,8 +276,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: part_mut(&mut self.texture, ..width),
             textured: part_mut(&mut self.textured, ..width),
             edges: part_mut(&mut self.edges, ..width),
-            open,
-            repeats,
+            blocks: &mut self.blocks,
             support: part_mut(&mut self.support, ..width),
             band: Ring::new(self.band.as_flattened_mut(), width),
             flags: Ring::new(self.band_flags.as_flattened_mut(), width),

@@ -103,11 +103,9 @@ pub struct Frame<'a> {
     pub(super) textured: &'a mut [u8],
     /// Edges of each column: a bit for each of the last eight rows, the newest in the lowest.
     pub(super) edges: &'a mut [u8],
-    /// Open blocks of the last row that was looked at: a bit for each four columns, in words of 32.
-    pub(super) open: &'a mut [u8],
-    /// Blocks that are refused as repeated, and those that repeat in each of the last three rows that were
-    /// looked at: four times the words of open blocks.
-    pub(super) repeats: &'a mut [u8],
+    /// Bits of blocks of four columns, in words of 32: those that are open, those that are refused as repeated,
+    /// and those that repeat in each of the last three rows that were looked at.
+    pub(super) blocks: &'a mut [u8],
     /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.

@@ -58,8 +58,6 @@ pub(super) mod mask;
 #[cfg(feature = "trace")]
 mod traced;
 
-pub(super) use open::words;
-
 use super::backend::BY_CAPACITY;
 use super::memory::Rows5;
 use super::method::{Block, External, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};

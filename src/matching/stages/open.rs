@@ -32,7 +32,7 @@ pub(super) const BLOCK: usize = 4;
 const BLOCKS: usize = u32::BITS as usize;
 
 /// Bytes of a row's bits, in words.
-pub(in crate::matching) const fn words(width: usize) -> usize {
+pub(super) const fn words(width: usize) -> usize {
     width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>()
 }
 
@@ -41,7 +41,8 @@ const MORE: u32 = 0x400;
 
 /// Forgets the frame before: above the first row all is open.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    frame.open.fill(u8::MAX);
+    let bytes = words(frame.width).min(frame.blocks.len());
+    part_mut(frame.blocks, ..bytes).fill(u8::MAX);
 }
 
 /// Takes row `y` of the left image, whose edges are in; below the image all stays as it is.
@@ -54,10 +55,9 @@ pub(super) fn take_open(frame: &mut Frame<'_>, y: usize, lines: Option<[&Rows5<'
     {
         let [above, below] = [left[1], left[3]].map(|line| part(line, ..frame.width).as_chunks().0);
         let row = Smooth { above, below, edges: frame.edges.as_chunks().0 };
-        let (words, rest) = frame.open.as_chunks_mut();
+        let words = frame.blocks.as_chunks_mut().0;
         let least = u32::from(least_gradient(frame.config.noise));
         push(words.get_mut(..frame.width.div_ceil(BLOCK * BLOCKS)).unwrap_or_default(), &row, least);
-        debug_assert!(rest.len() < size_of::<u32>(), "a word for each 128 columns");
     }
 }
 
@@ -158,7 +158,9 @@ pub(super) fn limit_lengths(frame: &mut Frame<'_>) {
     let most = frame.config.checks.open_run;
     if most > 0 {
         let (mut lengths, backend) = (frame.workspace.lengths(), frame.backend);
-        for_columns(frame.open, frame.width, &mut |places| backend.limit_lengths(&mut lengths, places, most));
+        for_columns(frame.blocks, frame.width, &mut |places| {
+            backend.limit_lengths(&mut lengths, places, most)
+        });
     }
 }
 
@@ -172,7 +174,7 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
     }
     let margins = frame.workspace.margins();
     let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
-    for_columns(frame.open, frame.width, &mut |places| {
+    for_columns(frame.blocks, frame.width, &mut |places| {
         let (answers, flags) = (part_mut(answers, places.clone()), part_mut(flags, places.clone()));
         let margins = part(margins, places.clone());
         for (((answer, flags), &margin), x) in answers.iter_mut().zip(flags).zip(margins).zip(places) {

@@ -38,10 +38,12 @@ fn is_asked<S: Method>(frame: &Frame<'_>) -> bool {
 
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    frame.repeats.fill(0);
+    let bytes = words(frame.width).min(frame.blocks.len());
+    part_mut(frame.blocks, bytes..).fill(0);
 }
 
 /// Takes row `y` of the left image; below the image all stays as it is.
+#[inline(never)]
 pub(super) fn take_repeats<S: Method>(frame: &mut Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
     if let Some([left, _]) = lines
         && is_asked::<S>(frame)
@@ -49,7 +51,8 @@ pub(super) fn take_repeats<S: Method>(frame: &mut Frame<'_>, y: usize, lines: Op
     {
         let most = usize::from(frame.config.disparities) - 1;
         let bytes = words(frame.width);
-        let (twice, rest) = split_mut(frame.repeats, bytes);
+        let (_, rest) = split_mut(frame.blocks, bytes);
+        let (twice, rest) = split_mut(rest, bytes);
         let (latest, rest) = split_mut(rest, bytes);
         let (before, rest) = split_mut(rest, bytes);
         let before_that = part_mut(rest, ..bytes);
@@ -112,11 +115,12 @@ fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
 }
 
 /// Refuses the answers of `newest` that are on a pattern or beside it.
+#[inline(never)]
 pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) {
         let first = usize::from(frame.config.min_disparity);
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
-        for_columns(frame.repeats, frame.width, &mut |places| {
+        for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
             let places = places.start.max(first)..places.end.max(first);
             let flags = part_mut(flags, places.clone()).iter_mut();
@@ -129,11 +133,12 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
 }
 
 /// Takes out what was filled of the row that waits where the newest row repeats.
+#[inline(never)]
 pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) && frame.config.checks.fill_pixels > 0 {
         let here = waiting(newest);
         let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
-        for_columns(frame.repeats, frame.width, &mut |places| {
+        for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone()).iter_mut();
             for (flags, answer) in flags.zip(part_mut(answers, places)) {
                 keep_loop();

@@ -84,7 +84,7 @@ fn a_white_wall_is_not_nearer_than_it_is() {
 fn a_pattern_that_repeats_is_ambiguous() {
     let hard = HardScene::boards(1.3, 7);
     let truth = hard.scene.truth();
-    for (filter, most_wrong) in [(Filter::Default, 0.04), (Filter::Strict, 0.02)] {
+    for (filter, most_wrong) in [(Filter::Default, 0.02), (Filter::Strict, 0.01)] {
         for method in [MethodName::SgmLean, MethodName::Sgm, MethodName::SgmEdge] {
             let parts = [Part::Board, Part::Textured];
             let [board, textured] = shares(&hard, method, filter, &parts)[..] else { unreachable!() };
@@ -96,7 +96,7 @@ fn a_pattern_that_repeats_is_ambiguous() {
             let flagged: Vec<_> = seen.map(|i| map.flags[i].contains(PixelFlags::AMBIGUOUS)).collect();
             let share = flagged.iter().filter(|&&flagged| flagged).count() as f64 / flagged.len() as f64;
             println!("{method}, {}: {share:.3} ambiguous", filter.name());
-            assert!(share >= 0.85, "{method}, {}: {share}", filter.name());
+            assert!(share >= 0.7, "{method}, {}: {share}", filter.name());
         }
     }
 }

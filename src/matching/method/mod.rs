@@ -103,8 +103,8 @@ pub struct Frame<'a> {
     pub(super) textured: &'a mut [u8],
     /// Edges of each column: a bit for each of the last eight rows, the newest in the lowest.
     pub(super) edges: &'a mut [u8],
-    /// Bits of blocks of four columns, in words of 32: those that are open, those that are refused as repeated,
-    /// and those that repeat in each of the last three rows that were looked at.
+    /// Bits of blocks of four columns, in words of 32: those that are open, those that are refused as
+    /// repeated, and those that repeat in each of the last three rows that were looked at.
     pub(super) blocks: &'a mut [u8],
     /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],

@@ -14,7 +14,7 @@
 use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{fill_row, keep_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{copy, part, part_mut, split_mut};
@@ -102,15 +102,23 @@ fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
         };
         run = if repeats { run + 1 } else { 0 };
         let least_run = LEAST_RUN.max(period + period / 2);
-        if run >= least_run {
-            let first = if run == least_run { x.saturating_sub(run - 1 + period) } else { x };
-            for block in first / BLOCK..=x / BLOCK {
+        if run == least_run {
+            for block in x.saturating_sub(run - 1 + period) / BLOCK..x / BLOCK {
                 keep_loop();
-                if let Some(bits) = blocks.get_mut(block / 8) {
-                    *bits |= 1 << (block % 8);
-                }
+                set(blocks, block);
             }
         }
+        if run >= least_run {
+            set(blocks, x / BLOCK);
+        }
+    }
+}
+
+/// Sets the bit of a block.
+#[inline(always)]
+fn set(blocks: &mut [u8], block: usize) {
+    if let Some(bits) = blocks.get_mut(block / 8) {
+        *bits |= 1 << (block % 8);
     }
 }
 
@@ -123,11 +131,10 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
             let places = places.start.max(first)..places.end.max(first);
-            let flags = part_mut(flags, places.clone()).iter_mut();
-            flags.zip(part_mut(answers, places)).for_each(|(flags, answer)| {
+            for flags in part_mut(flags, places.clone()) {
                 *flags = flags.union(PixelFlags::AMBIGUOUS);
-                *answer = Disparity::NONE;
-            });
+            }
+            fill_row(part_mut(answers, places), Disparity::NONE);
         });
     }
 }
@@ -139,12 +146,16 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         let here = waiting(newest);
         let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
-            let flags = part_mut(flags, places.clone()).iter_mut();
-            for (flags, answer) in flags.zip(part_mut(answers, places)) {
-                keep_loop();
-                if flags.contains(PixelFlags::FILLED) {
-                    *flags = flags.without(PixelFlags::FILLED);
-                    *answer = Disparity::NONE;
+            let flags = part_mut(flags, places.clone());
+            // On a large pattern nothing was filled.
+            let all = flags.iter().fold(PixelFlags::CLEAR, |all, &flags| all.union(flags));
+            if all.contains(PixelFlags::FILLED) {
+                for (flags, answer) in flags.iter_mut().zip(part_mut(answers, places)) {
+                    keep_loop();
+                    if flags.contains(PixelFlags::FILLED) {
+                        *flags = flags.without(PixelFlags::FILLED);
+                        *answer = Disparity::NONE;
+                    }
                 }
             }
         });

@@ -53,6 +53,7 @@ mod shell;
 mod solve;
 mod sources;
 mod structure;
+mod typed_rig;
 mod uncalibrated;
 mod view;
 mod walk;

@@ -2,9 +2,9 @@
 
 use crate::look::{MaskArgs, SearchArgs};
 use crate::results::DepthArgs;
-use crate::scale::TypedRig;
 use crate::shared::{BalanceArgs, MethodArgs, RectifyOptions, colour_range, filter, method, noise};
 use crate::sources::SourceArgs;
+use crate::typed_rig::TypedRig;
 use crate::watch::ObstacleArgs;
 use clap::Args;
 use std::path::PathBuf;

@@ -1,8 +1,8 @@
 //! `stereo plan`: what a rig of two cameras can tell, and what it takes, before it is built.
 
 use crate::failure::Failure;
-use crate::scale::{self, angle};
 use crate::shared::{image_size, length, method, print};
+use crate::typed_rig::{self, angle};
 use clap::Args;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::matching::Config;
@@ -140,7 +140,7 @@ fn focal_px(args: &PlanArgs) -> Result<f64, Failure> {
     let width = f64::from(args.size.width);
     let LensArgs { focal_px, focal_mm, field_of_view } = args.lens;
     let lens = focal_mm.zip(args.sensor_width_mm).map(|(f, sensor)| exact(f) / exact(sensor) * width);
-    let seen = field_of_view.map(|degrees| scale::focal_px(degrees, args.size.width));
+    let seen = field_of_view.map(|degrees| typed_rig::focal_px(degrees, args.size.width));
     let found = focal_px.map(exact).or(lens).or(seen);
     found.ok_or_else(|| Failure::new("--focal-px: is missing; give it, --focal-mm or --field-of-view"))
 }

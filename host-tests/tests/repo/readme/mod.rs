@@ -100,7 +100,7 @@ fn what_assures_is_there() {
         for name in names {
             let is_file = FOLDERS.iter().any(|folder| root().join(folder).join(name).is_file());
             let is_test = tests.iter().any(|(_, text)| text.contains(&format!("fn {name}(")));
-            let is_chore = ["cross", "firmware --", "rtl --", "fuzz", "miri", "soak"]
+            let is_chore = ["cross", "firmware --", "rtl --", "fuzz", "miri", "mutants", "soak"]
                 .iter()
                 .any(|chore| name.starts_with(chore));
             assert!(is_file || is_test || is_chore, "docs/assurance.md: there is no test {name}");

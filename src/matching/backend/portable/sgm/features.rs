@@ -106,8 +106,8 @@ once_without_vectors! {
         first
     }
 
-    /// The features of as many columns as there is a place for. Gradients are cut off before they are shifted,
-    /// which is the same as after.
+    /// The features of as many columns as there is a place for. Gradients are cut off before they are
+    /// shifted, which is the same as after.
     fn looks_of<R: FeatureRows>(
         lines: &Rows5<'_>,
         gradient: u8,

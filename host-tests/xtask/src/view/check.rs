@@ -22,9 +22,9 @@ const MATCHED: [[i64; 6]; 7] = [
     [3, 2, 3, 128, 0, 60],
     [1, 0, 1, 16, 20, 0],
 ];
-/// What can be used: 32 settings, 3 numbers and 2 choices of the cameras, 14 fields of the plan, 7 views, 4
+/// What can be used: 33 settings, 3 numbers and 2 choices of the cameras, 14 fields of the plan, 7 views, 4
 /// openers, 9 buttons, 2 lists of cameras, 2 that unfold, the picture and the text to copy.
-const CONTROLS: usize = 32 + 5 + 14 + 7 + 4 + 9 + 2 + 2 + 2;
+const CONTROLS: usize = 33 + 5 + 14 + 7 + 4 + 9 + 2 + 2 + 2;
 const SEARCH: [&str; 6] = ["method", "filter", "noise", "disparities", "min_disparity", "min_confidence"];
 
 /// A number for what the picture shows.
@@ -118,7 +118,7 @@ fn every_control_says_what_it_stands_at(page: &mut LivePage) -> Outcome {
     let Value::Array(controls) = page.browser.value(list)? else {
         return Err(Failure::new("the page has no controls"));
     };
-    hold(controls.len() == 32, || format!("{} controls", controls.len()))?;
+    hold(controls.len() == 33, || format!("{} controls", controls.len()))?;
     for (place, control) in controls.iter().enumerate() {
         let name = control["name"].as_str().unwrap_or_default();
         if control["list"].is_u64() {

@@ -99,14 +99,14 @@ class Moving {
       this.stop();
       throw new Error(fault);
     }
-    [this.isOn, this.times] = [true, []];
+    [this.isOn, this.times, this.names] = [true, [], names];
     this.next(names);
   }
 
-  // Shows a frame when there is one, and then the next.
+  // Shows a frame when there is one, and then the next, until it is stopped or something else begins.
   next(names) {
     this.eyes[0].video.requestVideoFrameCallback(() => {
-      if (!this.isOn) return;
+      if (!this.isOn || this.names !== names) return;
       try {
         this.times = [...this.times.slice(1 - TIMED), performance.now()];
         this.show(this.pair(names));

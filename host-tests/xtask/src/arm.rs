@@ -1,9 +1,7 @@
 //! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in
 //! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
 
-use crate::packages;
 use crate::parallel;
-use crate::setup;
 use crate::steps::{Outcome, cargo, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
@@ -48,12 +46,14 @@ const ARM32: Arm = Arm {
     skipped: &[],
 };
 
-/// Adds the targets and the programs that are missing.
-pub fn set_up() -> Outcome {
-    others().try_for_each(|arm| {
-        setup::targets(&[arm.target])?;
-        packages::install(&[arm.linker, arm.emulator])
-    })
+/// Their targets.
+pub fn targets() -> Vec<&'static str> {
+    others().map(|arm| arm.target).collect()
+}
+
+/// Their linkers and emulators.
+pub fn programs() -> Vec<&'static str> {
+    others().flat_map(|arm| [arm.linker, arm.emulator]).collect()
 }
 
 /// Those that the tests do not run on anyway.

@@ -39,12 +39,22 @@ pub fn install(programs: &[&str]) -> Outcome {
     }
     // What fails here is told below, in one line.
     let updated = apt(&["update"]).is_ok();
-    let install = |package: &str| apt(&["install", "-y", "--no-install-recommends", package]).is_ok();
+    let install =
+        |packages: &[&str]| apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).is_ok();
+    // All at once take half the time of one after another. A distribution that lacks one refuses them all.
+    let all: Vec<_> = missing
+        .iter()
+        .flat_map(|&one| packages_with(one).into_iter().take(1).chain(library_of(one)))
+        .collect();
+    let at_once = updated && install(&all);
     for program in missing {
+        if at_once && is_there(program) {
+            continue;
+        }
         let found =
-            updated && packages_with(program).into_iter().any(|package| install(package) && runs(program));
+            updated && packages_with(program).into_iter().any(|package| install(&[package]) && runs(program));
         let library = library_of(program);
-        if found && (is_there(program) || library.is_some_and(install) && is_there(program)) {
+        if found && library.is_none_or(|library| install(&[library])) && is_there(program) {
             continue;
         }
         let mut names = packages_with(program).join(" or ");

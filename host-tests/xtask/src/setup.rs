@@ -1,8 +1,10 @@
 //! Gets the tools that the tests need: targets and components by rustup, QEMU, Verilator and what C
 //! needs by apt-get.
 
+use crate::arm;
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
+use crate::view;
 use std::fs;
 
 /// The targets that the core is built for.
@@ -26,6 +28,10 @@ pub const CHECKED: [&str; 5] = [
 /// Those for which rustup may have no compiled `core`: its source is compiled for them.
 pub const FROM_SOURCE: [&str; 2] = ["thumbv8m.base-none-eabi", "armv7r-none-eabihf"];
 
+/// The targets of the examples in C.
+const C_TARGETS: [&str; 3] =
+    ["thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf", "riscv32imac-unknown-none-elf"];
+
 /// The emulators of the boards.
 pub const QEMU_ARM: &str = "qemu-system-arm";
 pub const QEMU_RISCV: &str = "qemu-system-riscv32";
@@ -35,26 +41,42 @@ pub fn qemu_of(target: &str) -> &'static str {
     if target.starts_with("riscv") { QEMU_RISCV } else { QEMU_ARM }
 }
 
-/// Adds the targets, components and toolchain that are missing, then the packages of what runs on boards.
-pub fn run_all() -> Outcome {
-    targets(&[TARGETS.as_slice(), &CHECKED].concat())?;
-    components()?;
-    toolchain(&rust_version()?)?;
-    packages::install(&[QEMU_ARM, QEMU_RISCV])?;
-    gates()?;
-    c()
-}
-
 /// What simulates the gates of `examples/fpga`.
-pub fn gates() -> Outcome {
-    packages::install(&["verilator", "make", "g++"])
+const GATES: [&str; 3] = ["verilator", "make", "g++"];
+/// What compiles, runs and watches the examples in C.
+const C: [&str; 9] = [
+    "arm-none-eabi-gcc",
+    "riscv64-unknown-elf-gcc",
+    "cmake",
+    "make",
+    "gcc",
+    "g++",
+    QEMU_ARM,
+    QEMU_RISCV,
+    "valgrind",
+];
+
+/// Adds the targets, components and toolchain that are missing.
+pub fn toolchains() -> Outcome {
+    targets(&[TARGETS.as_slice(), &CHECKED, &C_TARGETS, &view::TARGETS, &arm::targets()].concat())?;
+    components()?;
+    toolchain(&rust_version()?)
 }
 
-/// What the examples in C need, and the watch over memory that was never written.
+/// Adds the programs of all steps that are missing.
+pub fn programs() -> Outcome {
+    packages::install(&[C.as_slice(), &GATES, &view::PROGRAMS, &arm::programs()].concat())
+}
+
+/// Adds what simulates the gates of `examples/fpga`.
+pub fn gates() -> Outcome {
+    packages::install(&GATES)
+}
+
+/// Adds what the examples in C need, and the watch over memory that was never written.
 pub fn c() -> Outcome {
-    targets(&["thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf", "riscv32imac-unknown-none-elf"])?;
-    packages::install(&["arm-none-eabi-gcc", "riscv64-unknown-elf-gcc", "cmake", "make", "gcc", "g++"])?;
-    packages::install(&[QEMU_ARM, QEMU_RISCV, "valgrind"])
+    targets(&C_TARGETS)?;
+    packages::install(&C)
 }
 
 /// What firmware for these targets needs.
@@ -74,6 +96,7 @@ pub fn targets(needed: &[&str]) -> Outcome {
     let there = installed("target")?;
     let mut missing: Vec<_> =
         needed.iter().copied().filter(|target| !there.lines().any(|line| line == *target)).collect();
+    missing.sort();
     missing.dedup();
     if missing.is_empty() {
         return Ok(());

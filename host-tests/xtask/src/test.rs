@@ -28,15 +28,17 @@ pub fn run(only: Option<String>) -> Outcome {
         println!("{NOT_RUN}");
     }
     let mut steps = Steps::new(only);
-    steps.step("set up", || setup::run_all().and_then(|()| arm::set_up()).and_then(|()| view::set_up()))?;
+    steps.step("set up", setup::toolchains)?;
     steps.step("format", format)?;
     // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
-    // each other. Those that build in the same folder stand in the same row.
+    // each other. Those that build in the same folder stand in the same row; what needs the
+    // distribution's programs comes after them.
     side_by_side(
         &mut steps,
         [
-            &[("clippy", clippy), ("tests", tests), ("documentation", documentation)],
+            &[("tests", tests), ("clippy", clippy), ("documentation", documentation)],
             &[
+                ("programs", setup::programs),
                 ("kernels on Arm", arm::run),
                 ("kernels on WebAssembly", view::kernels),
                 ("cross checks", cross::sample),
@@ -125,7 +127,7 @@ fn clippy() -> Outcome {
     run_cargo("clippy --locked --workspace --all-targets --features stereopsis/defmt -- -D warnings")?;
     run_cargo(&format!(
         "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {} -- -D warnings",
-        target_dir().join("campaign").display()
+        target_dir().display()
     ))?;
     // The kinds of cores have code of their own.
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imc-unknown-none-elf", "")] {

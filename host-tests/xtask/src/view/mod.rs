@@ -33,6 +33,7 @@ const SIMD: &str = "-C target-feature=+simd128";
 /// Of the module, and of the tests of its kernel.
 pub const TARGETS: [&str; 2] = ["wasm32-unknown-unknown", "wasm32-wasip1"];
 /// What runs the tests, and what the page is tested in.
+pub const PROGRAMS: [&str; 2] = [NODE, CHROMIUM];
 const NODE: &str = "node";
 pub const CHROMIUM: &str = "chromium";
 
@@ -45,9 +46,9 @@ pub struct Arguments {
 }
 
 /// Adds the targets and the programs that are missing.
-pub fn set_up() -> Outcome {
+fn set_up() -> Outcome {
     setup::targets(&TARGETS)?;
-    packages::install(&[NODE, CHROMIUM])
+    packages::install(&PROGRAMS)
 }
 
 /// Builds the module, puts it beside the program, and runs that.

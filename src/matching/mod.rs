@@ -16,13 +16,13 @@
 //!     1. the row that came out last gets back the answers that were refused as unsure (`withhold`);
 //!     2. denoise, if asked for: the lines that come in are smoothed against noise (in `method`);
 //!     3. census of the row that comes in (`method`, `backend`);
-//!     4. texture and edges of its pixels, if asked for;
+//!     4. texture and edges of its pixels, and the open places that have none, if asked for;
 //!     5. what was filled in the row that came out last is taken out of it: no later row looks at a guess;
 //!     6. median of 3 x 3 answers, if asked for;
 //!     7. costs, their aggregation and winner-take-all (`method`, `backend`);
 //!     8. left-right check and sub-pixel fit;
-//!     9. repeats: answers refused on patterns that repeat along the row; fattening: answers refused that
-//!        carry a near surface on over a place without texture;
+//!     9. answers refused that are unsure in open places (`open`), on patterns that repeat along the row
+//!        (`repeats`), and where a near surface is carried on over a place without texture (`fattening`);
 //!     10. smoothing along the row, within surfaces;
 //!     11. confidence, if asked for;
 //!     12. speckle filter, in a band of five rows;

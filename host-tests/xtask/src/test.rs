@@ -15,7 +15,6 @@ use crate::rtl;
 use crate::setup;
 use crate::steps::{Failure, Outcome, Steps, cargo, command, root, run as run_command, target_dir};
 use crate::view;
-use std::fs;
 use std::path::PathBuf;
 
 /// What is printed when they are not run, so that nobody takes them for passed.
@@ -84,11 +83,7 @@ fn side_by_side(steps: &mut Steps, rows: [&[NamedStep]; 2]) -> Outcome {
     if steps.is_part() {
         return rows.into_iter().flatten().try_for_each(|(name, work)| steps.step(name, work));
     }
-    // README's commands build a clone's in its place.
-    let xtask =
-        root().join(target_dir()).join("xtask-of-steps").with_extension(std::env::consts::EXE_EXTENSION);
-    let own = std::env::current_exe().and_then(|own| fs::copy(own, &xtask));
-    own.map_err(|e| Failure::new(format!("{}: {e}", xtask.display())))?;
+    let xtask = std::env::current_exe().map_err(|e| Failure::new(format!("this program: {e}")))?;
     let one = |name: &str| {
         let output = command(&xtask, &["test", "--step", name]).output();
         let output = output.map_err(|e| Failure::new(format!("{}: {e}", xtask.display())))?;

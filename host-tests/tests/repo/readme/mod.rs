@@ -188,25 +188,37 @@ fn is_installed(program: &str) -> bool {
     found.status.success()
 }
 
-/// A target folder for the clone. Its profiles are those of this test's own target folder, so that the
-/// dependencies are built once; the firmware is built apart.
+/// The folder of this test's own build products.
+fn own_target() -> &'static Path {
+    Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder")
+}
+
+/// A target folder for the clone. What users build, in the profile `release`, goes where this test's own
+/// products are, so that the dependencies are built once; the firmware is built apart.
 fn target_of_clone(folder: &Path) -> PathBuf {
-    let own = Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder");
     let target = folder.join("target");
     fs::create_dir(&target).expect("the clone's target folder");
-    for profile in ["debug", "release"] {
-        let profile = own.join(profile);
-        fs::create_dir_all(&profile).expect("the profile's folder");
-        let link = Command::new("ln").arg("-s").arg(profile).arg(&target).status().expect("ln");
-        assert!(link.success(), "ln: {link}");
-    }
+    let release = own_target().join("release");
+    fs::create_dir_all(&release).expect("the profile's folder");
+    let link = Command::new("ln").arg("-s").arg(release).arg(&target).status().expect("ln");
+    assert!(link.success(), "ln: {link}");
     target
 }
+
+/// `cargo` for the blocks. The chores of the clone are those of this repository, which are built.
+const CARGO: &str = r#"cargo() {
+    [ "$1" = xtask ] || { command cargo "$@"; return; }
+    shift
+    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$ROOT/Cargo.toml" --package xtask
+    "$OWN_TARGET/debug/xtask" "$@"
+}
+"#;
 
 /// Runs a block's lines in one shell, which ends at the first that fails.
 fn run(block: &str, clone: &Path, target: &Path) {
     let mut shell = Command::new("sh");
-    shell.args(["-e", "-x", "-c", block]).current_dir(clone).env("CARGO_TARGET_DIR", target);
+    shell.args(["-e", "-x", "-c", &format!("{CARGO}{block}")]).current_dir(clone);
+    shell.env("CARGO_TARGET_DIR", target).env("OWN_TARGET", own_target()).env("ROOT", root());
     let output = shell.output().expect("sh");
     let told =
         format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));

@@ -126,7 +126,7 @@ fn set(blocks: &mut [u8], block: usize) {
 #[inline(never)]
 pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) {
-        let first = usize::from(frame.config.min_disparity);
+        let first = usize::from(frame.config.min_disparity).min(frame.width);
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.

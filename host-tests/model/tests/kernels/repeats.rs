@@ -56,3 +56,14 @@ fn patterns_that_repeat_equal_the_twin() {
     refused::<SgmLean>();
     refused::<SgmEdge>();
 }
+
+#[test]
+fn a_search_may_begin_beyond_the_row() {
+    let mut pipeline = pipeline::<Sgm>();
+    let picture = squares((50, 12), 12, &mut Random::new(0), 0, 0);
+    for min_disparity in [49, 50, 60] {
+        let config = Config { min_disparity, ..Config::for_method::<Sgm>(50, 12, 32) };
+        compare(&mut pipeline, &config, &(picture.clone(), picture.clone()))
+            .unwrap_or_else(|e| panic!("from {min_disparity} px on: {e}"));
+    }
+}

@@ -1,10 +1,8 @@
 //! Gets the tools that the tests need: targets and components by rustup, QEMU, Verilator and what C
 //! needs by apt-get.
 
-use crate::arm;
 use crate::packages;
 use crate::steps::{Failure, Outcome, command, output_of, root, run};
-use crate::view;
 use std::fs;
 
 /// The targets that the core is built for.
@@ -42,9 +40,9 @@ pub fn qemu_of(target: &str) -> &'static str {
 }
 
 /// What simulates the gates of `examples/fpga`.
-const GATES: [&str; 3] = ["verilator", "make", "g++"];
+pub const GATES: [&str; 3] = ["verilator", "make", "g++"];
 /// What compiles, runs and watches the examples in C.
-const C: [&str; 9] = [
+pub const C: [&str; 9] = [
     "arm-none-eabi-gcc",
     "riscv64-unknown-elf-gcc",
     "cmake",
@@ -58,14 +56,9 @@ const C: [&str; 9] = [
 
 /// Adds the targets, components and toolchain that are missing.
 pub fn toolchains() -> Outcome {
-    targets(&[TARGETS.as_slice(), &CHECKED, &C_TARGETS, &view::TARGETS, &arm::targets()].concat())?;
+    targets(&[TARGETS.as_slice(), &CHECKED, &C_TARGETS].concat())?;
     components()?;
     toolchain(&rust_version()?)
-}
-
-/// Adds the programs of all steps that are missing.
-pub fn programs() -> Outcome {
-    packages::install(&[C.as_slice(), &GATES, &view::PROGRAMS, &arm::programs()].concat())
 }
 
 /// Adds what simulates the gates of `examples/fpga`.

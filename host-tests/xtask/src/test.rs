@@ -10,6 +10,7 @@ use crate::firmware;
 use crate::fuzz::CAMPAIGN;
 use crate::growth;
 use crate::package;
+use crate::packages;
 use crate::parallel;
 use crate::rtl;
 use crate::setup;
@@ -27,7 +28,7 @@ pub fn run(only: Option<String>) -> Outcome {
         println!("{NOT_RUN}");
     }
     let mut steps = Steps::new(only);
-    steps.step("set up", setup::toolchains)?;
+    steps.step("set up", set_up)?;
     steps.step("format", format)?;
     // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
     // each other. Those that build in the same folder stand in the same row; what needs the
@@ -37,7 +38,7 @@ pub fn run(only: Option<String>) -> Outcome {
         [
             &[("tests", tests), ("clippy", clippy), ("documentation", documentation)],
             &[
-                ("programs", setup::programs),
+                ("programs", programs),
                 ("kernels on Arm", arm::run),
                 ("kernels on WebAssembly", view::kernels),
                 ("cross checks", cross::sample),
@@ -109,6 +110,17 @@ fn real_data() -> Outcome<Option<PathBuf>> {
         return Err(Failure::new(format!("STEREO_DATA: {} has no folder stereo/", folder.display())));
     }
     Ok(Some(folder))
+}
+
+/// Adds what compilers need.
+fn set_up() -> Outcome {
+    setup::toolchains()?;
+    setup::targets(&[view::TARGETS.as_slice(), &arm::targets()].concat())
+}
+
+/// Adds the programs of all steps.
+fn programs() -> Outcome {
+    packages::install(&[setup::C.as_slice(), &setup::GATES, &view::PROGRAMS, &arm::programs()].concat())
 }
 
 fn format() -> Outcome {

@@ -18,6 +18,8 @@ pub struct Rows {
     pub error_px: f64,
     /// Its standard deviation.
     pub sigma_px: f64,
+    /// How much lower the right image shows what is in the middle of the left one, px.
+    pub lower_px: f64,
     /// By how much the right camera is turned about the axis that points right, degrees; absent when no
     /// calibration tells the focal length.
     pub pitch_deg: Option<f64>,
@@ -64,6 +66,7 @@ impl Rows {
         Self {
             error_px: found.row_error_px(camera, size),
             sigma_px: (0..3).map(|axis| alone(axis).powi(2)).sum::<f64>().sqrt(),
+            lower_px: -found.rotation_rad[0] * camera.focal_px().1,
             pitch_deg: degrees(found.rotation_rad[0]),
             pitch_sigma_deg: degrees(found.sigma_rad[0]),
             roll_deg: found.rotation_rad[2].to_degrees(),
@@ -91,14 +94,14 @@ impl Rows {
     pub fn warning(&self) -> Option<String> {
         let is_off = self.health != "good" && self.error_px - ONE_SIDED_95 * self.sigma_px > 0.25;
         let turned = match self.pitch_deg {
-            Some(pitch) => format!("pitch {pitch:+.2} degrees, roll {:+.2} degrees", self.roll_deg),
-            None => format!("roll {:+.2} degrees", self.roll_deg),
+            Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees,"),
+            None => format!("the right image stands {:+.2} px lower than the left one:", self.lower_px),
         };
         is_off.then(|| {
             format!(
-                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; the right \
-                 camera seems turned: {turned}; calibrate anew or rectify",
-                self.error_px, self.sigma_px
+                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned} roll \
+                 {:+.2} degrees; calibrate anew or rectify",
+                self.error_px, self.sigma_px, self.roll_deg
             )
         })
     }

@@ -207,9 +207,12 @@ fn rows_of_a_pair_are_reported_with_their_uncertainty() {
         );
         assert!(told.sigma_px < 0.2 && told.health != "good", "{degrees:?}: {told:?}");
         assert!(told.warning().is_some_and(|line| line.contains("0.25 px")), "{degrees:?}: {told:?}");
+        assert!((told.lower_px + f * degrees[0].to_radians()).abs() < 0.2, "{degrees:?}: {told:?}");
         // Without a focal length rows and the roll are told, and no pitch.
         let other = measured([&left, &bad], None, None).expect("features");
         assert!((other.error_px - told.error_px).abs() < 0.2 && other.pitch_deg.is_none(), "{other:?}");
+        assert!((other.lower_px - told.lower_px).abs() < 0.2, "{other:?}");
+        assert!(other.warning().is_some_and(|line| line.contains("px lower")), "{other:?}");
         // Where nothing is shown nothing is measured.
         let nothing = GrayImage::new(SIZE.width.into(), SIZE.height.into());
         assert_eq!(measured([&left, &bad], Some([&nothing, &nothing]), None), None);

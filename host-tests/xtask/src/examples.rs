@@ -3,6 +3,7 @@
 
 use crate::setup;
 use crate::steps::{Failure, Outcome, command, ended_within, root, run as run_command, target_dir};
+use std::path::PathBuf;
 use std::process::Command;
 use std::time::Duration;
 
@@ -53,11 +54,16 @@ pub fn executors() -> Outcome {
     RTIC.run()
 }
 
+/// Where all of them are built: what they share is built once.
+fn products() -> PathBuf {
+    target_dir().join("examples")
+}
+
 /// Cargo in a folder of the examples, where its own configuration has the flags.
 fn cargo(folder: &str, words: &str) -> Command {
     let mut cargo = command("cargo", &words.split_whitespace().collect::<Vec<_>>());
     cargo.current_dir(root().join("examples").join(folder));
-    cargo.env("CARGO_TARGET_DIR", target_dir().join(folder));
+    cargo.env("CARGO_TARGET_DIR", products());
     cargo
 }
 
@@ -75,7 +81,7 @@ impl Example {
         // Time is instructions: a slow host loses no line of the timer's.
         qemu.args(["-icount", "shift=0,align=off,sleep=off"]);
         qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
-        qemu.arg(target_dir().join(self.name).join(target).join("release").join(self.name));
+        qemu.arg(products().join(target).join("release").join(self.name));
         // Text without a file is what QEMU writes on standard error.
         let ended = ended_within(&mut qemu, Duration::from_secs(60))?;
         let printed = format!("{}{}", ended.stdout, ended.stderr);

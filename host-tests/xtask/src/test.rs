@@ -31,41 +31,36 @@ pub fn run(only: Option<String>) -> Outcome {
     steps.step("set up", set_up)?;
     steps.step("format", format)?;
     // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
-    // each other. Those that build in the same folder stand in the same row; what needs the
-    // distribution's programs comes after them.
+    // each other. Those that build in the same folder stand in the same row; what takes longest comes first.
     side_by_side(
         &mut steps,
-        [
-            &[("tests", tests), ("clippy", clippy), ("documentation", documentation)],
+        &[
+            &[("tests", tests)],
             &[
                 ("programs", programs),
                 ("kernels on Arm", arm::run),
                 ("kernels on WebAssembly", view::kernels),
-                ("cross checks", cross::sample),
-                ("stated rust-version", rust_version),
-                ("package", package::run),
             ],
         ],
     )?;
-    // The firmware is held to the program that the tests have built; its checksums and the C interface share
-    // a folder.
+    // What needs those programs, or `stereo` as the tests have built it. The firmware's checksums and the C
+    // interface share a folder.
     side_by_side(
         &mut steps,
-        [
-            &[
-                ("README's commands", readme_commands),
-                ("quickstart", || examples::QUICKSTART.run()),
-                ("gates", rtl::sample),
-                ("live page", || view::sample(&stereo())),
-                ("book", || book::sample(&stereo())),
-            ],
+        &[
             &[
                 ("firmware", || firmware::check_sample(&stereo())),
                 ("growth", growth::sample),
                 ("C interface", c::run),
-                ("async", examples::executors),
-                ("boards", boards::run),
             ],
+            &[("boards", boards::run)],
+            &[("README's commands", readme_commands)],
+            &[("clippy", clippy), ("documentation", documentation), ("package", package::run)],
+            &[("live page", || view::sample(&stereo())), ("book", || book::sample(&stereo()))],
+            &[("cross checks", cross::sample)],
+            &[("stated rust-version", rust_version)],
+            &[("quickstart", || examples::QUICKSTART.run()), ("async", examples::executors)],
+            &[("gates", rtl::sample)],
         ],
     )?;
     steps.summary()?;
@@ -78,11 +73,11 @@ pub fn run(only: Option<String>) -> Outcome {
 /// A step's name and what it does.
 type NamedStep = (&'static str, fn() -> Outcome);
 
-/// Runs two rows of steps beside each other, each step as a program of its own whose output is printed when
+/// Runs rows of steps, two beside each other, each step as a program of its own whose output is printed when
 /// it is done; or one after another those that were asked for.
-fn side_by_side(steps: &mut Steps, rows: [&[NamedStep]; 2]) -> Outcome {
+fn side_by_side(steps: &mut Steps, rows: &[&[NamedStep]]) -> Outcome {
     if steps.is_part() {
-        return rows.into_iter().flatten().try_for_each(|(name, work)| steps.step(name, work));
+        return rows.iter().copied().flatten().try_for_each(|(name, work)| steps.step(name, work));
     }
     let xtask = std::env::current_exe().map_err(|e| Failure::new(format!("this program: {e}")))?;
     let one = |name: &str| {
@@ -93,9 +88,10 @@ fn side_by_side(steps: &mut Steps, rows: [&[NamedStep]; 2]) -> Outcome {
         let failed = || Failure::new(text[1].lines().last().unwrap_or(name));
         if output.status.success() { Ok(()) } else { Err(failed()) }
     };
-    let names = rows.map(|row| row.iter().map(|(name, _)| *name).collect::<Vec<_>>());
-    let all = names.each_ref().map(|row| row.join(", ")).join(" beside ");
-    steps.step(&all, || parallel::work(names.to_vec(), |row| row.into_iter().try_for_each(one)).map(|_| ()))
+    let names: Vec<_> =
+        rows.iter().map(|row| row.iter().map(|(name, _)| *name).collect::<Vec<_>>()).collect();
+    let all = names.iter().map(|row| row.join(", ")).collect::<Vec<_>>().join(" beside ");
+    steps.step(&all, || parallel::work(names, |row| row.into_iter().try_for_each(one)).map(|_| ()))
 }
 
 /// The folder of real stereo pairs: has to be there in CI, and where it is named.

@@ -20,6 +20,7 @@ use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{copy, part, part_mut, split_mut};
 use crate::matching::method::{Frame, Method};
 use crate::units::{Disparity, PixelFlags};
+use core::ops::Range;
 
 /// Rows from one that is looked at to the next one: no power of two, as the sides of squares often are, whose
 /// edges would be all that is seen.
@@ -70,38 +71,53 @@ pub(super) fn take_repeats<S: Method>(frame: &mut Frame<'_>, y: usize, lines: Op
 /// Sets the bits of the blocks where a line repeats itself within `most` pixels.
 #[inline(never)]
 fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
-    let least = least_gradient(noise) as u8;
-    let slack = least / 8 * 3;
-    let mut extreme = line.first().copied().unwrap_or(0);
-    let mut is_low = true;
+    let least = u32::from(least_gradient(noise));
+    let slack = (least / 8 * 3) as u8;
+    // Where brightness falls, it is turned round: so it is always the least value that is looked for.
+    let (mut turned, mut lowest) = (0, u32::from(line.first().copied().unwrap_or(0)));
     // The last rise is farther away than any period.
-    let (mut risen, mut period, mut run) = (usize::MAX / 2, 0, 0);
+    let (mut first, mut risen, mut period) = (0, usize::MAX / 2, 0);
     for (x, &pixel) in line.iter().enumerate() {
         keep_loop();
-        extreme = if is_low { extreme.min(pixel) } else { extreme.max(pixel) };
-        if extreme.abs_diff(pixel) >= least {
-            extreme = pixel;
-            if is_low {
+        let value = u32::from(pixel) ^ turned;
+        lowest = lowest.min(value);
+        if value - lowest >= least {
+            turned ^= 255;
+            lowest = u32::from(pixel) ^ turned;
+            if turned != 0 {
                 let apart = x.wrapping_sub(risen);
-                risen = x;
                 if period == 0 || apart.abs_diff(period) > 1 {
+                    mark_period(line, first..x.min(risen + period + 2), period, slack, blocks);
                     period = if (LEAST_PERIOD..=most).contains(&apart) { apart } else { 0 };
-                    run = 0;
+                    first = x;
                 }
+                risen = x;
             }
-            is_low = !is_low;
         }
-        let goes_on = period > 0 && x.wrapping_sub(risen) <= period + 1;
-        let before = if goes_on { x.checked_sub(period + 1) } else { None };
-        let repeats = match before.and_then(|first| line.get(first..first + 3)) {
-            Some(&[a, b, c]) => {
+    }
+    mark_period(line, first..line.len().min(risen + period + 2), period, slack, blocks);
+}
+
+/// Sets the bits of the blocks where a line repeats itself among the pixels whose rises are `period` pixels
+/// apart, give or take `slack` in brightness. Most textures have far fewer of them than a pattern needs.
+#[inline(never)]
+fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, blocks: &mut [u8]) {
+    let least_run = LEAST_RUN.max(period + period / 2);
+    if period == 0 || pixels.len() < least_run {
+        return;
+    }
+    let mut run = 0;
+    for x in pixels {
+        keep_loop();
+        let before = x.checked_sub(period + 1).and_then(|first| line.get(first..first + 3));
+        let repeats = match (before, line.get(x)) {
+            (Some(&[a, b, c]), Some(&pixel)) => {
                 let (low, high) = (a.min(b).min(c), a.max(b).max(c));
                 pixel.saturating_add(slack) >= low && pixel <= high.saturating_add(slack)
             }
             _ => false,
         };
         run = if repeats { run + 1 } else { 0 };
-        let least_run = LEAST_RUN.max(period + period / 2);
         if run == least_run {
             for block in x.saturating_sub(run - 1 + period) / BLOCK..x / BLOCK {
                 keep_loop();

@@ -87,7 +87,10 @@ fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
             if turned != 0 {
                 let apart = x.wrapping_sub(risen);
                 if period == 0 || apart.abs_diff(period) > 1 {
-                    mark_period(line, first..x.min(risen + period + 2), period, slack, blocks);
+                    // Hardly ever: what it is called with need not be put together.
+                    if x - first >= LEAST_RUN {
+                        mark_period(line, first..x.min(risen + period + 2), period, slack, blocks);
+                    }
                     period = if (LEAST_PERIOD..=most).contains(&apart) { apart } else { 0 };
                     first = x;
                 }

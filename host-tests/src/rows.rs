@@ -99,8 +99,8 @@ impl Rows {
         };
         is_off.then(|| {
             format!(
-                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned} roll \
-                 {:+.2} degrees; calibrate anew or rectify",
+                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned} \
+                 roll {:+.2} degrees; calibrate anew or rectify",
                 self.error_px, self.sigma_px, self.roll_deg
             )
         })

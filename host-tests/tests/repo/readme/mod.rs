@@ -209,7 +209,8 @@ fn target_of_clone(folder: &Path) -> PathBuf {
 const CARGO: &str = r#"cargo() {
     [ "$1" = xtask ] || { command cargo "$@"; return; }
     shift
-    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$ROOT/Cargo.toml" --package xtask
+    manifest=$ROOT/Cargo.toml
+    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$manifest" --package xtask
     "$OWN_TARGET/debug/xtask" "$@"
 }
 "#;

@@ -34,7 +34,7 @@ pub struct Scene {
     /// Columns on the left that are not scored.
     pub first_column: u16,
     /// Whether the scene is the folder that was named, not one in it.
-    is_folder: bool,
+    pub(super) is_folder: bool,
 }
 
 /// Where KITTI has the truth, and the images of the left and of the right camera.
@@ -51,8 +51,6 @@ const FOLDERS: [(&str, [&str; 2], &str); 4] = [
     ("gt.png", ["left.png", "right.png"], "nonocc.png"),
     ("true_disparity.pfm", ["left.png", "right.png"], "nonocc.png"),
 ];
-/// What a result is called in its scene's folder.
-const RESULTS: [&str; 4] = ["disparity.pfm", "disp0.pfm", "disp0GT.pfm", "disparity.png"];
 
 impl Scene {
     /// The scenes in a folder, in the order of their names.
@@ -68,41 +66,38 @@ impl Scene {
         for path in entries(folder)? {
             found.extend(one(&path)?);
         }
-        if found.is_empty() {
-            let what = "holds no scene with a truth; a scene is a folder with disp0.pfm (Middlebury), \
-                        disp0GT.pfm (ETH3D) or gt.png and meta.json, or a file in disp_occ_0 (KITTI)";
-            return Err(EvalError::new(folder, what));
+        if found.is_empty() { Err(Self::none(folder)?) } else { Ok(found) }
+    }
+
+    /// Says that a folder holds no scenes, and which of its folders do.
+    fn none(folder: &Path) -> Result<EvalError, EvalError> {
+        let mut holding = Vec::new();
+        for path in entries(folder)?.into_iter().filter(|path| path.is_dir()) {
+            // What cannot be read holds none.
+            let mut inside = entries(&path).unwrap_or_default().into_iter();
+            if kitti(&path).is_ok_and(|found| !found.is_empty())
+                || inside.any(|path| matches!(one(&path), Ok(Some(_))))
+            {
+                holding.extend(path.file_name().map(|name| name.to_string_lossy().into_owned()));
+            }
         }
-        Ok(found)
+        let what = "a scene is a folder with disp0.pfm (Middlebury), disp0GT.pfm (ETH3D) or gt.png and \
+                    meta.json, or a file in disp_occ_0 (KITTI)";
+        let what = match holding.len() {
+            0 => format!("holds no scene with a truth; {what}"),
+            _ => format!("holds no scene with a truth, but in {}: name that folder", holding.join(", ")),
+        };
+        Ok(EvalError::new(folder, what))
     }
 
     /// What is scored.
     pub fn read_truth(&self) -> Result<FloatMap, EvalError> {
         truth(&self.truth, &DisparityFile::KITTI, self.mask.as_deref(), self.first_column)
     }
-
-    /// The scene's result in a folder, and its confidence where there is one beside it.
-    pub fn found_in(&self, folder: &Path) -> Result<(PathBuf, Option<PathBuf>), EvalError> {
-        let own = if self.is_folder { folder.to_owned() } else { folder.join(&self.name) };
-        let by_name = ["pfm", "png"].map(|end| folder.join(format!("{}.{end}", self.name)));
-        // The truth itself is no result.
-        let mut places = RESULTS.iter().map(|name| own.join(name)).chain(by_name);
-        let Some(found) = places.find(|path| path.is_file() && *path != self.truth) else {
-            let what = format!(
-                "holds no result for {name}; it is looked for as {name}/disparity.pfm, {name}/disp0.pfm, \
-                 {name}.pfm and {name}.png",
-                name = self.name
-            );
-            return Err(EvalError::new(folder, what));
-        };
-        let sure = own.join("confidence.png");
-        let is_beside = found.parent() == sure.parent() && sure.is_file();
-        Ok((found, is_beside.then_some(sure)))
-    }
 }
 
 /// What is in a folder, in the order of the names.
-fn entries(folder: &Path) -> Result<Vec<PathBuf>, EvalError> {
+pub(super) fn entries(folder: &Path) -> Result<Vec<PathBuf>, EvalError> {
     let failed = |e: std::io::Error| EvalError::new(folder, format!("cannot be read ({e})"));
     let entries = fs::read_dir(folder).map_err(failed)?;
     let mut paths = entries.map(|entry| Ok(entry.map_err(failed)?.path())).collect::<Result<Vec<_>, _>>()?;

@@ -5,18 +5,20 @@
 //!
 //! * [`DisparityFile`], [`truth`], [`mask`], [`confidence`]: the files.
 //! * [`Scene`]: folders of Middlebury 2014, KITTI, ETH3D and of this repository, told apart by what is in
-//!   them.
+//!   them; [`Results`]: folders of results.
 //! * [`OpenCv`]: the matchers of OpenCV, to be beside.
 
 mod files;
 mod layout;
 mod measures;
 mod opencv;
+mod results;
 
 pub use files::{DisparityFile, confidence, mask, truth};
 pub use layout::Scene;
 pub use measures::Measures;
 pub use opencv::{OpenCv, OpenCvScene};
+pub use results::Results;
 
 use std::path::{Path, PathBuf};
 

@@ -1,22 +1,22 @@
 //! `stereo eval`: results of any program, or of this one, beside a known truth.
 
+mod altered;
 mod rival;
 mod table;
 
 use crate::failure::Failure;
 use crate::frame::{Matched, matched};
-use crate::input::Pair;
 use crate::look::{Disparities, Look, SearchArgs, disparities, look};
 use crate::place::Place;
 use crate::results::depth_unit;
 use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print};
 use clap::Args;
-use image::imageops;
 use rival::Rival;
 use std::path::{Path, PathBuf};
 use stereopsis_host::calibration::Calibration;
-use stereopsis_host::eval::{DisparityFile, Measures, Scene, confidence, truth};
+use stereopsis_host::eval::{DisparityFile, Measures, Results, Scene, confidence, truth};
 use stereopsis_host::pfm::FloatMap;
+use stereopsis_host::real::Alteration;
 use table::{Evaluated, Evaluation, Scenes};
 
 /// What follows the options in the command's help.
@@ -24,7 +24,7 @@ pub const EXAMPLE: &str = "Examples:
   stereo eval --found out/disparity.pfm --truth disp0.pfm --mask mask0nocc.png
   stereo eval --found results --truth MiddEval3/trainingQ
   stereo eval --scenes kitti/training --method sgm --disparities auto --csv kitti.csv
-  stereo eval --scenes MiddEval3/trainingQ --opencv
+  stereo eval --scenes MiddEval3/trainingQ --opencv --altered noise:5
 
 Disparities are PFM (px) or PNG (px x 256, 0 where there is none). Folders are those of Middlebury 2014 \
                            (SCENE/disp0.pfm), ETH3D (SCENE/disp0GT.pfm), KITTI (disp_occ_0/000000_10.png) \
@@ -75,6 +75,11 @@ pub struct EvalArgs {
     #[arg(long, value_name = "PYTHON", num_args = 0..=1, default_missing_value = "python3",
         conflicts_with = "found")]
     opencv: Option<PathBuf>,
+    /// Matches the scenes as worse cameras would have taken them: noise:SIGMA (Gaussian noise of both images,
+    /// grey levels), exposure:GAIN:OFFSET or gamma:GAMMA (of the right image), or half-row (the right image
+    /// half a row low)
+    #[arg(long, value_name = "HOW", conflicts_with = "found", value_parser = altered::alteration)]
+    altered: Option<Alteration>,
     #[command(flatten)]
     method: MethodArgs,
     #[command(flatten)]
@@ -99,8 +104,9 @@ pub fn run(args: &EvalArgs) -> Result<(), Failure> {
         (Some(folder), _) => {
             let all = Scene::all(folder)?;
             let mut rival = args.opencv.as_deref().map(Rival::new).transpose()?;
-            let matched = |scene| by_matching(args, scene, rival.as_mut());
-            let scenes = all.iter().map(matched).collect::<Result<Vec<_>, _>>()?;
+            // The seed tells the scenes apart: the same noise in all of them would count but once.
+            let matched = |(scene, seed)| by_matching(args, scene, seed, rival.as_mut());
+            let scenes = all.iter().zip(1..).map(matched).collect::<Result<Vec<_>, _>>()?;
             if let Some(rival) = rival {
                 beside = rival.evaluated(&all)?;
             }
@@ -110,7 +116,8 @@ pub fn run(args: &EvalArgs) -> Result<(), Failure> {
         (None, Some((found, truth))) => vec![of_files(args, found, truth)?],
         (None, None) => return Err(Failure::new("--found: is missing; give it and --truth, or --scenes")),
     };
-    let evaluation = Evaluation { own: Scenes::new(scenes), beside };
+    let altered = args.altered.map(Alteration::name);
+    let evaluation = Evaluation { own: Scenes::new(scenes), altered, beside };
     if let Some(place) = csv {
         let bytes = evaluation.csv()?;
         place.write(|out| out.write_all(&bytes), None)?;
@@ -150,12 +157,13 @@ fn of_folders(args: &EvalArgs, found: &Path, truth: &Path) -> Result<Vec<Evaluat
             "{option} {path}: is for a truth that is a file; folders have their own"
         )));
     }
-    let file = found_file(args)?;
+    let (file, scenes) = (found_file(args)?, Scene::all(truth)?);
+    let results = Results::open(found)?;
     let evaluated = |scene: &Scene| {
-        let (result, sure) = scene.found_in(found)?;
+        let (result, sure) = results.of(scene)?;
         compared(&file, scene.name.clone(), &result, sure.as_deref(), &scene.read_truth()?)
     };
-    Scene::all(truth)?.iter().map(evaluated).collect()
+    scenes.iter().map(evaluated).collect()
 }
 
 fn compared(
@@ -173,10 +181,14 @@ fn compared(
 }
 
 /// A scene that is matched here, as `match` does it.
-fn by_matching(args: &EvalArgs, scene: &Scene, rival: Option<&mut Rival>) -> Result<Evaluated, Failure> {
+fn by_matching(
+    args: &EvalArgs,
+    scene: &Scene,
+    seed: u64,
+    rival: Option<&mut Rival>,
+) -> Result<Evaluated, Failure> {
     let truth = scene.read_truth()?;
-    let [left, right] = &scene.images;
-    let mut pair = Pair::open(left, right)?;
+    let (mut pair, [left, right]) = altered::pair(scene, args.altered, seed)?;
     let (width, height) = (pair.width, pair.height);
     if (truth.width, truth.height) != (usize::from(width), usize::from(height)) {
         return Err(Failure::new(format!(
@@ -194,7 +206,6 @@ fn by_matching(args: &EvalArgs, scene: &Scene, rival: Option<&mut Rival>) -> Res
     };
     let named = |e: Failure| Failure::new(format!("{}: {e}", scene.name));
     search.check(&args.method, width, height).map_err(named)?;
-    let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
     let Look { config, .. } = look(&search, &args.method, [&left, &right], None, None).map_err(named)?;
     if let Some(rival) = rival {
         rival.take([&left, &right], [config.disparities, config.min_disparity])?;

@@ -47,6 +47,9 @@ pub struct Beside {
 pub struct Evaluation {
     #[serde(flatten)]
     pub own: Scenes,
+    /// How the images were made worse, where they were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub altered: Option<String>,
     /// Other programs on the same scenes.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub beside: Vec<Beside>,
@@ -96,6 +99,9 @@ impl Evaluation {
         }
         text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 \
                  px off), unsure of the\nway from the best order of the answers to a random one\n";
+        if let Some(altered) = &self.altered {
+            let _ = writeln!(text, "images altered: {altered}");
+        }
         if let Some(beside) = self.beside.first() {
             let _ = writeln!(text, "{}", beside.settings.replace("; ", ";\n"));
         }

@@ -192,21 +192,31 @@ fn several_settings_are_shown_side_by_side() {
     let run = stereo(
         [
             ["match", "--left", &left, "--right", &right, "--out", &out, "--disparities", "32"].as_slice(),
-            &["--settings", "fast,block,sgm:strict"],
+            &["--settings", "fast,block,sgm:strict,sgm"],
         ]
         .concat(),
     );
     assert!(run.status.success(), "{}", text(&run.stderr));
-    assert_eq!(names(&bench.path("out")), ["block", "fast", "settings.csv", "settings.png", "sgm-strict"]);
+    let files = ["block", "fast", "settings.csv", "settings.png", "sgm", "sgm-strict"];
+    assert_eq!(names(&bench.path("out")), files);
     let table = text(&run.stdout);
     assert!(["\nfast ", "\nblock ", "\nsgm-strict "].iter().all(|name| table.contains(name)), "{table}");
     assert!(fs::read(bench.path("out/block/disparity.pfm")).expect("a result") == alone(&bench));
     let picture = image::open(bench.path("out/settings.png")).expect("a picture").into_rgb8();
-    // The left image and three maps, with gaps of four columns.
-    assert_eq!(picture.dimensions(), (4 * WIDTH + 3 * 4, HEIGHT));
-    let block = image::open(bench.path("out/block/disparity_colour.png")).expect("a picture").into_rgb8();
-    let shown = imageops::crop_imm(&picture, 2 * (WIDTH + 4), 0, WIDTH, HEIGHT).to_image();
-    assert!(shown == block);
+    // The left image and three maps, and below it the last one: names of 20 rows above each, of which the
+    // longest takes 100 columns, and gaps of four pixels.
+    let (column, row) = (WIDTH.max(100) + 4, 20 + 4 + HEIGHT + 4);
+    assert_eq!(picture.dimensions(), (4 * column - 4, 2 * row - 4));
+    let mut seen = Vec::new();
+    for (name, x, y) in [("fast", 1, 0), ("block", 2, 0), ("sgm-strict", 3, 0), ("sgm", 0, 1)] {
+        let map = image::open(bench.path("out").join(name).join("disparity_colour.png")).expect("a picture");
+        let part = |top, height| imageops::crop_imm(&picture, x * column, y * row + top, WIDTH, height);
+        assert!(part(24, HEIGHT).to_image() == map.into_rgb8(), "{name}");
+        let written = part(0, 20).to_image();
+        let dark = written.pixels().filter(|pixel| pixel.0 == [0; 3]).count();
+        assert!(dark > 20 * name.len() && !seen.contains(&written), "{name} is not written: {dark}");
+        seen.push(written);
+    }
 }
 
 #[test]
@@ -237,6 +247,7 @@ fn sources_that_do_not_fit_are_named() {
     };
     alone(&settings("fast,best"), "fast, block, sgm-lean, sgm and sgm-edge");
     alone(&settings("sgm:soft"), "dense, default and strict");
+    alone(&settings("fast,block,fast"), "--settings: fast is given twice");
     alone(&settings("sgm:strict:low:more"), "METHOD:FILTER:NOISE");
     alone(&["--left", &folder, "--right", &folder, "--settings", "fast"], "--settings: is for one pair");
     refused(&settings("fast"), "--settings");

@@ -81,7 +81,10 @@ impl Plan {
             let of_core = || self.work.iter().filter(|work| work.core == core);
             let millions = of_core().map(|work| format!("{:.1}", work.instructions / 1e6));
             line(text, &format!("  {core}, million instr."), millions);
-            let frames = of_core().map(|work| format!("{:.1}", work.frames_per_s));
+            // Of a frame that takes seconds the tenths say nothing.
+            let frames = of_core().map(|Work { frames_per_s, .. }| {
+                if *frames_per_s < 1.0 { format!("{frames_per_s:.2}") } else { format!("{frames_per_s:.1}") }
+            });
             line(text, &format!("    frames/s, {clock_mhz} MHz"), frames);
         }
         *text += "             frames/s at one instruction a clock, without camera and memory waits; RAM is \

@@ -50,7 +50,7 @@ class Cloud {
     if (this.isTaken) return;
     this.isTaken = true;
     if (!hasDepth) return;
-    const { width, height, depth } = planes;
+    const { width, height, depth, stepMetres = 0.001 } = planes;
     const step = Math.max(1, Math.ceil(Math.sqrt((width * height) / MOST_POINTS)));
     const colours = new Uint32Array(pair.left.pixels.buffer, pair.left.pixels.byteOffset, width * height);
     const found = [];
@@ -61,19 +61,19 @@ class Cloud {
     }
     if (found.length === 0) return;
     const sorted = Uint16Array.from(found, (pixel) => depth[pixel]).sort();
-    const [near, far] = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))] / 1000);
+    const ends = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))]);
     const places = new Float32Array(3 * found.length);
     const focal = rig.focal_px / ratio;
     // Where nothing says where the axis is, it is in the middle.
     const [cx, cy] = rig.centre_px?.map((at) => at / ratio) ?? [(width - 1) / 2, (height - 1) / 2];
     found.forEach((pixel, i) => {
-      const z = depth[pixel] / 1000;
+      const z = depth[pixel] * stepMetres;
       const [x, y] = [pixel % width, Math.floor(pixel / width)];
       // The library looks along -Z, and its Y is up.
       places.set([((x - cx) * z) / focal, ((cy - y) * z) / focal, -z], 3 * i);
     });
     this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]), focal, step };
-    this.centre = (near + far) / 2;
+    this.centre = ((ends[0] + ends[1]) / 2) * stepMetres;
   }
 
   // The library's objects, made when they are needed first; nothing where the browser has no WebGL.

@@ -16,8 +16,10 @@ function others(settings, preset) {
 
 function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
   const value = (name) => settings[at(name)];
-  const files = pair.isOne ? `--side-by-side ${pair.isMoving ? "frame.png" : quoted(pair.left.name)}`
-    : pair.isMoving ? "--left left.png --right right.png"
+  // A frame of a sequence is a file, one of a video or a camera is none.
+  const isFrame = pair.isMoving && !Array.isArray(pair.of[0]);
+  const files = pair.isOne ? `--side-by-side ${isFrame ? "frame.png" : quoted(pair.left.name)}`
+    : isFrame ? "--left left.png --right right.png"
       : `--left ${quoted(pair.left.name)} --right ${quoted(pair.right.name)}`;
   const typed = hasDepth && rig.offset_px === 0
     ? ` --focal-px ${rig.focal_px} --baseline-mm ${rig.baseline_mm}` : "";
@@ -30,7 +32,7 @@ function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
     `${cameras.trim()}${cameras ? " " : ""}--out depth`,
   ];
   const frames = pair.isOne ? "# frame.png is a frame of it" : "# left.png, right.png are frames of them";
-  const notes = pair.isMoving ? [frames] : [];
+  const notes = isFrame ? [frames] : [];
   const other = others(settings, preset).map((i) => CONTROLS[i].name);
   if (other.length > 0) notes.push(`# ${other.join(", ")}: no options of match; copy as Rust or C`);
   if (hasDepth && rig.offset_px !== 0 && !calibrationWords()) {
@@ -61,7 +63,14 @@ function fields(settings, places) {
       seen.set(name, `[${[...all].join(", ")}]`);
     }
   }
-  return [...seen].map(([name, text]) => `${name}: ${text}`).join(", ");
+  return [...seen].map(([name, text]) => `${name}: ${text}`);
+}
+
+// A field of the configuration that has fields itself, of which these are given.
+function given(name, all) {
+  if (all.length === 0) return [];
+  const lines = all.map((field) => `        ${field},`);
+  return [`    ${name}: ${capital(name)} {`, ...lines, `        ..config.${name}`, "    },"];
 }
 
 function asRust({ settings, preset, planes }) {
@@ -70,17 +79,14 @@ function asRust({ settings, preset, planes }) {
   const other = others(settings, preset);
   const checks = fields(settings, other.filter((i) => i < PENALTIES));
   const penalties = fields(settings, other.filter((i) => i >= PENALTIES));
-  const more = [
-    ...(checks ? [`    checks: Checks { ${checks}, ..config.checks },`] : []),
-    ...(penalties ? [`    penalties: Penalties { ${penalties}, ..config.penalties },`] : []),
-  ];
+  const more = [...given("checks", checks), ...given("penalties", penalties)];
   const types = ["Config", "Filter", type];
-  if (checks) types.push("Checks");
-  if (penalties) types.push("Penalties");
+  if (checks.length > 0) types.push("Checks");
+  if (penalties.length > 0) types.push("Penalties");
   return [
     "use stereopsis::imaging::Noise;",
     `use stereopsis::matching::{${types.sort().join(", ")}};`,
-    ...(checks.includes("Disparity::") ? ["use stereopsis::units::Disparity;"] : []),
+    ...(checks.join().includes("Disparity::") ? ["use stereopsis::units::Disparity;"] : []),
     "",
     `let config = Config::for_method::<${type}>(${planes.width}, ${planes.height}, ${value("disparities")});`,
     "let config = Config {",

@@ -120,9 +120,10 @@ class Core {
     return this.answer;
   }
 
-  // Matches; the milliseconds. Deviations are told of a row alone, or of all. Throws the core's line.
-  run(sigmaRow = -1) {
-    const time = this.exports.run(sigmaRow);
+  // Matches; the milliseconds. Deviations are told of a row alone, or of all, and confidences if they are
+  // asked for. Throws the core's line.
+  run(sigmaRow = -1, isConfidence = true) {
+    const time = this.exports.run(sigmaRow, Number(isConfidence));
     this.renew();
     if (time < 0) throw new Error(this.message);
     return time;

@@ -1,12 +1,15 @@
 // What hands do: files, the cursor, turning, copying.
 
-async function openFiles(files) {
+// Takes files: calibrations, and a video, a pair, or a sequence; of pictures that are all by themselves each
+// has both side by side.
+async function openFiles(files, isEachOne = false) {
   if (!state.core || files.length === 0) return;
   const calibrations = [...files].filter(isCalibration);
   const others = [...files].filter((file) => !isCalibration(file));
   if (calibrations.length > 0 && others.length > 0) await takeCalibration(calibrations);
   if (others.length === 0) await calibrate(calibrations);
   else if (others.length === 1 && others[0].type.startsWith("video/")) await move(moving.play(others[0]));
+  else if (others.length > (isEachOne ? 1 : 2)) await move(moving.playPictures(others, isEachOne));
   else await take(openPair(others));
 }
 
@@ -26,7 +29,7 @@ async function copy(words) {
 function listen() {
   for (const id of ["pick-one", "pick-two", "pick-video", "pick-calibration"]) {
     byId(id).addEventListener("change", ({ target }) => {
-      openFiles(target.files);
+      openFiles(target.files, id === "pick-one");
       target.value = "";
     });
   }

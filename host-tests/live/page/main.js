@@ -22,7 +22,8 @@ function writeSettings() {
   const chosen = valueOf(CONTROLS[at("noise")]);
   core.settings[at("noise")] = chosen === 0 ? measured : chosen - 1;
   core.settings[at("balance")] = Number(!isOff("balance") && core.settings[at("method")] >= 2);
-  state.noise = chosen === 0 ? "auto" : NOISES[chosen - 1];
+  // Of what moves, the first frame was measured.
+  state.noise = chosen === 0 && !state.pair?.isMoving ? "auto" : NOISES[core.settings[at("noise")]];
 }
 
 // Measures the noise of the pair as the method sees it.
@@ -49,20 +50,27 @@ function run() {
   try {
     writeSettings();
     state.settings = Int32Array.from(state.core.settings);
-    // A frame tells the deviations where the cursor is: those of all pixels take a third of its time.
-    state.timeMs = state.core.run(moving.isOn ? cursor.y : -1);
+    match();
     complain(state.fault);
-    tellDepth();
   } catch (error) {
     complain(error);
     return;
   }
   show();
-  if (isPointed) tellPixel();
+  if (isPointed && (!moving.isOn || isWatched())) tellPixel();
   // Of what moves, figures that can be read.
   if (moving.isOn && performance.now() - toldAt < BETWEEN_FIGURES_MS) return;
   toldAt = performance.now();
   tellFigures();
+}
+
+// Matches, with all that may be looked at. Of what moves that is what is looked at now: deviations of all
+// pixels take a third of a frame's time, and confidences another one.
+function match() {
+  const isSeen = (...views) => !moving.isOn || isWatched() || views.includes(view());
+  state.timeMs = state.core.run(moving.isOn ? cursor.y : -1, isSeen("confidence"));
+  cloud.forget();
+  if (isSeen("depth", "points")) tellDepth();
 }
 
 // Says how long the frame took, and what it has.
@@ -72,7 +80,7 @@ function tellFigures() {
   let answers = 0;
   for (let i = 0; i < disparity.length; i += 1) answers += disparity[i] === NO_ANSWER ? 0 : 1;
   const share = ((100 * answers) / disparity.length).toFixed(1);
-  const noise = state.noise === "auto" ? `, noise ${NOISES[measured]} as measured` : "";
+  const noise = isOff("noise") ? `, noise ${NOISES[measured]} as measured` : "";
   const rate = `${(1000 / state.timeMs).toFixed(0)} a second, kernel ${state.core.kernel}`;
   const shown = moving.isOn && moving.rate > 0
     ? `; ${moving.rate.toFixed(0)} frames a second are shown` : "";
@@ -172,8 +180,9 @@ async function calibrate(files) {
 
 // Says what is matched.
 function namePair() {
-  const { left, right, isOne } = state.pair;
-  const names = isOne ? `${left.name}, side by side` : `${left.name}, ${right.name}`;
+  const { left, right, isOne, of } = state.pair;
+  const count = Array.isArray(of?.[0]) ? `${of.length} pairs from ` : "";
+  const names = count + (isOne ? `${left.name}, side by side` : `${left.name}, ${right.name}`);
   byId("pair-names").textContent = `${names}: ${left.width} x ${left.height}`;
 }
 
@@ -204,7 +213,7 @@ async function take(promised, rig = null) {
 
 // Takes a frame of what moves. The first one of a size tells the noise.
 function takeFrame(pair) {
-  const isFirst = !state.pair?.isMoving || state.pair.left.name !== pair.left.name;
+  const isFirst = state.pair?.of !== pair.of;
   if (isFirst) state.fault = null;
   put(pair);
   if (isFirst) {

@@ -1,5 +1,5 @@
-// Pictures that move: a video file or a camera that has both pictures side by side, or two cameras, frame by
-// frame.
+// Pictures that move: a video file or a camera that has both pictures side by side, two cameras, or the
+// pictures of a sequence, frame by frame.
 
 // One video and the canvas that its frames are read from.
 class Eye {
@@ -7,6 +7,7 @@ class Eye {
     this.video = document.createElement("video");
     Object.assign(this.video, { muted: true, loop: true, playsInline: true });
     this.canvas = new OffscreenCanvas(2, 2);
+    this.presented = 0;
   }
 
   // The pictures of a frame: one, or the two halves of it, of which an odd last column is in neither.
@@ -22,6 +23,15 @@ class Eye {
     return Array.from({ length: count }, (_, place) => ({ name, width, height, pixels: pixels(place) }));
   }
 
+  // A file plays no faster than its frames are taken, of which `presented` were ready: decoding others is in
+  // vain. What a camera sees cannot wait.
+  pace(presented) {
+    if (this.video.srcObject) return;
+    const isAhead = presented > this.presented + 1;
+    this.presented = presented;
+    this.video.playbackRate = Math.min(Math.max(this.video.playbackRate * (isAhead ? 0.97 : 1.005), 0.25), 1);
+  }
+
   stop() {
     this.video.pause();
     for (const track of this.video.srcObject?.getTracks() ?? []) track.stop();
@@ -32,6 +42,10 @@ class Eye {
 
 // Frames that the rate is told of, at most.
 const TIMED = 31;
+
+// Pictures of a sequence are shown for as long, ms, at least; so many pairs are decoded once alone.
+const LEAST_MS = 33;
+const KEPT = 48;
 
 class Moving {
   // `show` is given every pair; `end` is called with what went wrong, or nothing.
@@ -52,6 +66,36 @@ class Moving {
     this.url = URL.createObjectURL(file);
     this.eyes[0].video.src = this.url;
     await this.begin([file.name], `${file.name}: is no picture or video that this browser reads.`);
+  }
+
+  // Shows the pictures of files, pair after pair, and again from the first one.
+  async playPictures(files, isEachOne) {
+    this.stop();
+    const frames = isEachOne ? byName(files).map((file) => [file]) : framesOf(files);
+    const kept = [await openPair(frames[0])];
+    [this.isOn, this.times, this.names] = [true, [], frames];
+    this.nextPair(frames, kept, 0);
+  }
+
+  // Shows a pair, and then the next, until it is stopped or something else begins.
+  nextPair(frames, kept, place) {
+    setTimeout(async () => {
+      const isOver = () => !this.isOn || this.names !== frames;
+      try {
+        const began = performance.now();
+        const pair = kept[place] ?? await openPair(frames[place]);
+        if (isOver()) return;
+        if (place < KEPT) kept[place] = pair;
+        this.times = [...this.times.slice(1 - TIMED), performance.now()];
+        this.show({ ...pair, isMoving: true, of: frames });
+        const rest = Math.max(0, LEAST_MS - (performance.now() - began));
+        setTimeout(() => this.nextPair(frames, kept, (place + 1) % frames.length), rest);
+      } catch (error) {
+        if (isOver()) return;
+        this.stop();
+        this.end(error);
+      }
+    });
   }
 
   // Takes what a camera sees that has both pictures side by side.
@@ -105,9 +149,10 @@ class Moving {
 
   // Shows a frame when there is one, and then the next, until it is stopped or something else begins.
   next(names) {
-    this.eyes[0].video.requestVideoFrameCallback(() => {
+    this.eyes[0].video.requestVideoFrameCallback((_, { presentedFrames }) => {
       if (!this.isOn || this.names !== names) return;
       try {
+        this.eyes[0].pace(presentedFrames);
         this.times = [...this.times.slice(1 - TIMED), performance.now()];
         this.show(this.pair(names));
         this.next(names);
@@ -122,11 +167,11 @@ class Moving {
   pair(names) {
     if (!this.isTwo) {
       const [left, right] = this.eyes[0].frame(names[0], 2);
-      return { left, right, isOne: true, isMoving: true };
+      return { left, right, isOne: true, isMoving: true, of: names };
     }
     const [left, right] = this.eyes.flatMap((eye, i) => eye.frame(names[i], 1));
     checkSizes(left, right);
-    return { left, right, isOne: false, isMoving: true };
+    return { left, right, isOne: false, isMoving: true, of: names };
   }
 
   stop() {

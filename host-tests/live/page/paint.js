@@ -18,26 +18,28 @@ const RAMP = Array.from({ length: 256 }, (_, step) => {
 });
 const RAMP_WORDS = Uint32Array.from(RAMP, packed);
 
+// How often each number occurs, and the colour of each, of those that are painted.
+const counts = new Uint32Array(65536);
+const colourOf = new Uint32Array(65536);
+
 // The numbers between which the colours run: the 2nd to the 98th of a hundred of those that are some.
 function ends(numbers, none) {
-  const counts = new Uint32Array(65536);
-  let all = 0;
-  for (const number of numbers) {
-    if (number !== none) {
-      counts[number] += 1;
-      all += 1;
-    }
-  }
+  counts.fill(0);
+  for (let i = 0; i < numbers.length; i += 1) counts[numbers[i]] += 1;
+  const all = numbers.length - counts[none];
   if (all === 0) return null;
+  counts[none] = 0;
   const quantile = (share) => {
-    let left = Math.round(share * (all - 1));
-    return counts.findIndex((count) => (left -= count) < 0);
+    let left = Math.round(share * (all - 1)) - counts[0];
+    let number = 0;
+    while (left >= 0) {
+      number += 1;
+      left -= counts[number];
+    }
+    return number;
   };
   return [quantile(0.02), quantile(0.98)];
 }
-
-// The colour of each number, of those that are painted.
-const colourOf = new Uint32Array(65536);
 
 // Paints numbers in the colours of the ramp; `isNear` says whether large ones are near.
 function paintNumbers(words, numbers, none, isNear) {
@@ -48,10 +50,13 @@ function paintNumbers(words, numbers, none, isNear) {
   }
   const [low, high] = found;
   const scale = 255 / Math.max(high - low, 1);
-  for (let number = 0; number < colourOf.length; number += 1) {
-    const step = Math.min(Math.max(Math.round((number - low) * scale), 0), 255);
-    colourOf[number] = RAMP_WORDS[isNear ? step : 255 - step];
-  }
+  const colour = (number) => {
+    const step = Math.round((number - low) * scale);
+    return RAMP_WORDS[isNear ? step : 255 - step];
+  };
+  colourOf.fill(colour(low), 0, low);
+  for (let number = low; number <= high; number += 1) colourOf[number] = colour(number);
+  colourOf.fill(colour(high), high + 1);
   colourOf[none] = BLACK;
   for (let i = 0; i < words.length; i += 1) words[i] = colourOf[numbers[i]];
   return found;
@@ -135,5 +140,8 @@ function describePixel({ planes, hasDepth, rig, ratio }, x, y) {
     const sigmaMm = ((mm * mm) / (rig.focal_px * rig.baseline_mm)) * sigmaPx;
     text += `; depth ${mm} mm, sigma ${sigmaMm.toFixed(sigmaMm < 10 ? 1 : 0)} mm`;
   }
-  return `${text}; confidence ${planes.confidence[pixel]} of ${DATA.most_confidence}; flags: ${why}`;
+  // An answer's is never 0: then it was not asked for.
+  const sure = planes.confidence[pixel];
+  const confidence = sure > 0 ? `; confidence ${sure} of ${DATA.most_confidence}` : "";
+  return `${text}${confidence}; flags: ${why}`;
 }

@@ -48,12 +48,29 @@ function checkSizes(left, right) {
   throw new Error(`${size(left)}, ${size(right)}: both must have one size.`);
 }
 
+const byName = (files) => [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+
+// The frames of a sequence, each of two pictures whose names end with one number, or of one with both side by
+// side. Throws a line where they are neither.
+function framesOf(files) {
+  const sorted = byName(files);
+  const frames = new Map();
+  for (const file of sorted) {
+    const number = /(\d+)\D*$/.exec(file.name.replace(/\.[^.]*$/, ""))?.[1];
+    frames.set(Number(number), [...(frames.get(Number(number)) ?? []), file]);
+  }
+  const found = [...frames.values()];
+  const [count] = found.map(({ length }) => length);
+  if (frames.has(NaN) || count > 2 || found.some(({ length }) => length !== count)) {
+    throw new Error(`${files.length} files: of a sequence each number stands in the names of two pictures, `
+      + "left and right, or in that of one with both side by side.");
+  }
+  return found;
+}
+
 // A pair of one picture or of two, which are left and right in the order of their names.
 async function openPair(files) {
-  if (files.length === 0 || files.length > 2) {
-    throw new Error(`${files.length} files: two pictures are a pair, or one with both side by side.`);
-  }
-  const sorted = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+  const sorted = byName(files);
   const pictures = await Promise.all(sorted.map((file) => decode(file, file.name)));
   const pair = pictures.length === 2 ? pictures : halves(pictures[0]);
   const [left, right] = pair;
@@ -67,6 +84,12 @@ function toGrey({ pixels }, out) {
     out[i] = (4899 * pixels[from] + 9617 * pixels[from + 1] + 1868 * pixels[from + 2] + 8192) >> 14;
   }
 }
+
+// The numbers of a picture of them, whose first two channels are one number, the high byte first, and whose
+// third is another.
+const numbersOf = ({ pixels }) => Uint16Array.from({ length: pixels.length / 4 },
+  (_, i) => 256 * pixels[4 * i] + pixels[4 * i + 1]);
+const bytesOf = ({ pixels }) => Uint8Array.from({ length: pixels.length / 4 }, (_, i) => pixels[4 * i + 2]);
 
 // A picture of the page's data, which is a data URL.
 async function decodeUrl({ name, url }) {

@@ -5,22 +5,19 @@ const STEPS_PX = 32;
 const MOST_MM = 65535;
 const BAD_STEPS = 2 * STEPS_PX;
 
-// The numbers of the run, from pictures whose first two channels are one number, the high byte first.
+// The numbers of the run.
 async function decodeRun() {
   const decoded = async (name, url) => url && decodeUrl({ name, url });
   const urls = [byId("left-image").src, byId("right-image").src, DATA.answers, DATA.notes, DATA.truth];
   const all = await Promise.all(urls.map((url, i) => decoded(["left", "right"][i] ?? "data", url)));
   const [left, right, answers, notes, truth] = all;
   const { width, height } = answers;
-  const numbers = (picture) => Uint16Array.from({ length: width * height },
-    (_, i) => 256 * picture.pixels[4 * i] + picture.pixels[4 * i + 1]);
-  const bytes = (picture) => Uint8Array.from({ length: width * height }, (_, i) => picture.pixels[4 * i + 2]);
-  const planes = { width, height, left: new Uint8Array(width * height), disparity: numbers(answers),
-    confidence: bytes(answers), flags: bytes(notes),
-    sigma: Float32Array.from(numbers(notes), (n) => n / 1024) };
+  const planes = { width, height, left: new Uint8Array(width * height), disparity: numbersOf(answers),
+    confidence: bytesOf(answers), flags: bytesOf(notes),
+    sigma: Float32Array.from(numbersOf(notes), (n) => n / 1024) };
   toGrey(left, planes.left);
   planes.depth = planes.disparity.map(depthMm);
-  return { pair: { left, right }, planes, truth: truth ? numbers(truth) : null };
+  return { pair: { left, right }, planes, truth: truth ? numbersOf(truth) : null };
 }
 
 // Z = f b / (d + doffs), mm; 0 for none.

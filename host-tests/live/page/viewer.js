@@ -1,7 +1,7 @@
 // The picture of a page: one of the views of a result, its cursor, and the hands and keys that move them.
 
 // What is shown. A pixel of it stands for `ratio` pixels of a row of the pair.
-const state = { pair: null, planes: null, rig: {}, hasDepth: false, ratio: 1 };
+const state = { pair: null, planes: null, rig: {}, hasDepth: false, ratio: 1, describe: describePixel };
 const canvas = byId("picture");
 const cloud = new Cloud(canvas);
 const context = canvas.getContext("2d");
@@ -13,12 +13,13 @@ let isDrawing = false;
 
 const view = () => document.querySelector("input[name=view]:checked").value;
 
-// A button for each view.
-function addViews(names) {
+// A button for each view, of which one is shown first.
+function addViews(names, first = "disparity") {
   names.forEach((name) => {
     const label = make("label");
-    const radio = make("input", { type: "radio", name: "view", value: name, id: `view-${name}` });
-    radio.checked = name === "disparity";
+    const id = `view-${name.replaceAll(" ", "-")}`;
+    const radio = make("input", { type: "radio", name: "view", value: name, id });
+    radio.checked = name === first;
     radio.addEventListener("change", show);
     label.append(radio, ` ${name}`);
     byId("views").append(label);
@@ -66,9 +67,12 @@ function moveTo(event) {
   tellPixel();
 }
 
+// Whether somebody looks at a pixel now.
+const isWatched = () => canvas.matches(":hover, :focus");
+
 function tellPixel() {
   isPointed = true;
-  if (state.planes) byId("pixel").textContent = describePixel(state, cursor.x, cursor.y);
+  if (state.planes) byId("pixel").textContent = state.describe(state, cursor.x, cursor.y);
 }
 
 // Turns on and on, until it is stopped.

@@ -251,12 +251,12 @@ extern "C" fn measure() {
 }
 
 /// Matches; the milliseconds, or less than 0 with a message. Deviations are told of one row, or of all where
-/// that is less than 0.
+/// that is less than 0, and confidences unless that is 0.
 #[unsafe(no_mangle)]
-extern "C" fn run(sigma_row: i32) -> f64 {
+extern "C" fn run(sigma_row: i32, confidence: u32) -> f64 {
     let whole = whole();
     let mut planes = Planes { sigma_row: u16::try_from(sigma_row).ok(), ..whole.planes() };
-    session().run(&mut planes, clock).unwrap_or(-1.0)
+    session().run(&mut planes, confidence != 0, clock).unwrap_or(-1.0)
 }
 
 /// Tells depth; 0 with a message.

@@ -35,7 +35,7 @@ pub struct Planes<'a> {
     pub masks: Option<[&'a [u8]; 2]>,
     /// The bits of [`PixelFlags`](stereopsis::units::PixelFlags).
     pub flags: &'a mut [u8],
-    /// As [`Row::confidences`].
+    /// As [`Row::confidences`]; 0 where they are not asked for.
     pub confidences: &'a mut [u8],
     /// In steps of 1/32 px; [`Disparity::NONE`] for no answer.
     pub disparities: &'a mut [u16],
@@ -71,7 +71,11 @@ impl<'a> Planes<'a> {
         for (to, from) in flags.iter_mut().zip(row.flags()) {
             *to = from.bits();
         }
-        confidences.copy_from_slice(row.confidences());
+        confidences.fill(0);
+        // Of a row whose confidences are not asked for there are none.
+        for (to, from) in confidences.iter_mut().zip(row.confidences()) {
+            *to = *from;
+        }
         if self.sigma_row.is_none_or(|told| told == row.index()) {
             for (x, to) in sigmas.iter_mut().enumerate() {
                 *to = row.sigma_px(x).unwrap_or(0.0);
@@ -194,11 +198,13 @@ impl Session {
         noise
     }
 
-    /// Matches the pictures into the other planes; the milliseconds of the pipeline alone, by a clock of
-    /// milliseconds. What is wrong is said by the message.
-    pub fn run(&mut self, planes: &mut Planes<'_>, now: fn() -> f64) -> Option<f64> {
+    /// Matches the pictures into the other planes, with confidences or without, which take a third of the
+    /// time; the milliseconds of the pipeline alone, by a clock of milliseconds. What is wrong is said by the
+    /// message.
+    pub fn run(&mut self, planes: &mut Planes<'_>, confidence: bool, now: fn() -> f64) -> Option<f64> {
         self.message.clear();
         let config = settings::config(&self.settings, planes.width, planes.height);
+        let config = Config { confidence, ..config };
         let last = u32::from(config.min_disparity) + u32::from(config.disparities);
         if last > u32::from(planes.width) {
             let width = planes.width;

@@ -22,8 +22,13 @@ pub(super) fn body() -> &'static str {
 
 /// The scripts with the run's data; HTML.
 pub(super) fn script(report: &Report<'_>) -> io::Result<String> {
-    let data = in_script(data(report)?);
-    Ok(format!("<script>\n\"use strict\";\nconst DATA = {data};\n{}\n{SCRIPT}</script>\n", SHARED.join("\n")))
+    Ok(with_data(data(report)?, SCRIPT))
+}
+
+/// The scripts that both pages have, between data and the script that comes after them; HTML.
+pub(super) fn with_data(data: Map<String, Value>, script: &str) -> String {
+    let (data, shared) = (in_script(data), SHARED.join("\n"));
+    format!("<script>\n\"use strict\";\nconst DATA = {data};\n{shared}\n{script}</script>\n")
 }
 
 fn data(report: &Report<'_>) -> io::Result<Map<String, Value>> {
@@ -60,7 +65,7 @@ fn in_steps(px: f32) -> u16 {
 
 /// Numbers of two bytes and of one as a picture, `width` in a row: the high byte is red, the low one green,
 /// and the other number blue.
-fn url_of(width: usize, numbers: Vec<(u16, u8)>) -> io::Result<String> {
+pub(super) fn url_of(width: usize, numbers: Vec<(u16, u8)>) -> io::Result<String> {
     let rows = numbers.len() / width.max(1);
     let mut picture = RgbImage::new(width as u32, rows as u32);
     for (pixel, (number, other)) in picture.pixels_mut().zip(numbers) {

@@ -5,6 +5,7 @@ mod altered;
 mod calibrate;
 mod calibration;
 mod chance;
+mod copied;
 mod mock_camera;
 mod orientation;
 mod pair;

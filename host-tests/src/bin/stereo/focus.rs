@@ -112,6 +112,7 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
         index: &index,
         confidence: &confidence,
         depth_m: depth_m.as_deref(),
+        focal_px: args.focal_px,
     };
     staging.write("index_colour.png", |out| png(out, &report.index_colour()))?;
     staging.write("report.html", |out| report.write(out))?;

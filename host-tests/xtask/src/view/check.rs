@@ -4,7 +4,7 @@ use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
 use super::page::{COLOURS, LivePage, failed, hold, url_of};
 use super::program::as_the_program;
-use super::{cameras, plan, report, video};
+use super::{cameras, copied, focus, plan, report, video};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -71,6 +71,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     hold(page.text("message")?.is_empty(), || "the built-in scene is not matched".to_owned())?;
     every_setting_matches_as_the_program(&mut page, stereo, &scene)?;
     every_control_says_what_it_stands_at(&mut page)?;
+    copied::it_compiles(&mut page, folder)?;
     the_work_is_that_of_plan(&mut page, stereo)?;
     every_view_shows_something(&mut page)?;
     keys_and_names_reach_everything(&mut page)?;
@@ -81,6 +82,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     cameras::a_camera_is_matched_frame_by_frame(&mut page)?;
     cameras::two_cameras_are_matched_frame_by_frame(&mut page)?;
     video::a_video_is_matched_frame_by_frame(&mut page, folder)?;
+    video::a_sequence_is_matched_frame_by_frame(&mut page, stereo, &scene)?;
     let requests = page.requests();
     hold(requests == [served.url.as_str()], || format!("the page asks for {requests:?}"))?;
     let thrown = page.thrown();
@@ -95,7 +97,8 @@ pub fn sample(stereo: &Path) -> Outcome {
     hold(requests == [url.as_str()], || format!("as a file the page asks for {requests:?}"))?;
     println!("{figures}");
     without_simd_it_says_so(&url)?;
-    report::it_answers_as_the_files_do(&scene)
+    report::it_answers_as_the_files_do(&scene)?;
+    focus::it_answers_as_the_files_do(stereo, folder)
 }
 
 /// Disparities, flags and confidences are those of the command line that the page says, to the bit.
@@ -198,5 +201,5 @@ fn keys_and_names_reach_everything(page: &mut LivePage) -> Outcome {
     let said = page.text("pixel")?;
     let parts = ["column 401, row 300", " px, sigma ", " mm, sigma ", "confidence ", "flags: "];
     hold(parts.iter().all(|part| said.contains(part)), || format!("the pixel says '{said}'"))?;
-    page.everything_has_a_name(CONTROLS)
+    page.keys_reach_everything(CONTROLS)
 }

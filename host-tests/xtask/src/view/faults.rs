@@ -41,7 +41,8 @@ pub fn what_is_wrong_is_said(page: &mut LivePage, folder: &Path, scene: &Path) -
         (
             "pick-two",
             &[&small, &left, &odd],
-            "3 files: two pictures are a pair, or one with both side by side.",
+            "3 files: of a sequence each number stands in the names of two pictures, left and right, or in \
+             that of one with both side by side.",
         ),
     ];
     for (opener, files, line) in expected {

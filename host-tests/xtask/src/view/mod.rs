@@ -4,13 +4,15 @@
 //!   twin.
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
 //!   do, a step of the tests; [`faults`]: what it has to refuse. [`program`]: what the program says to the
-//!   page's command line; [`plan`], [`cameras`], [`video`]: parts of the
-//!   page; [`report`]: the report of a run.
+//!   page's command line; [`copied`]: what compilers say to its other texts; [`plan`], [`cameras`],
+//!   [`video`]: parts of the page; [`report`], [`focus`]: the reports of a run and of a focus stack.
 
 pub mod browser;
 mod cameras;
 mod check;
+mod copied;
 mod faults;
+mod focus;
 mod page;
 mod plan;
 mod program;
@@ -33,7 +35,7 @@ const SIMD: &str = "-C target-feature=+simd128";
 /// Of the module, and of the tests of its kernel.
 pub const TARGETS: [&str; 2] = ["wasm32-unknown-unknown", "wasm32-wasip1"];
 /// What runs the tests, and what the page is tested in.
-pub const PROGRAMS: [&str; 2] = [NODE, CHROMIUM];
+pub const PROGRAMS: [&str; 3] = [NODE, CHROMIUM, copied::GCC];
 const NODE: &str = "node";
 pub const CHROMIUM: &str = "chromium";
 

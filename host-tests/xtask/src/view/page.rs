@@ -116,9 +116,9 @@ impl LivePage {
         self.settle()
     }
 
-    /// Everything that can be used, so many elements, has a name and can have the focus, if it is not hidden
-    /// or at rest.
-    pub fn everything_has_a_name(&mut self, count: usize) -> Outcome {
+    /// Everything that can be used, so many elements, has a name and, if it is not hidden or at rest, gets
+    /// the focus by the tabulator: of the views the one that is shown, for arrows lead to the others.
+    pub fn keys_reach_everything(&mut self, count: usize) -> Outcome {
         let found = self.browser.value(
             "(() => { const all = [...document.querySelectorAll('input, select, button, textarea, canvas, \
              summary')]; return { count: all.length, unnamed: all.filter((e) => e.tabIndex < 0 || \
@@ -126,7 +126,29 @@ impl LivePage {
              .map((e) => e.outerHTML) }; })()",
         )?;
         hold(found["unnamed"] == json!([]), || format!("without a name or the focus: {}", found["unnamed"]))?;
-        hold(found["count"] == count, || format!("{} controls, {count} are looked at", found["count"]))
+        hold(found["count"] == count, || format!("{} controls, {count} are looked at", found["count"]))?;
+        self.browser.value(
+            "document.querySelectorAll('details').forEach((d) => { d.open = true; }); \
+             document.activeElement.blur(); window.reached = new Set()",
+        )?;
+        // Beside those that are counted there are regions that scroll.
+        for _ in 0..2 * count {
+            for kind in ["keyDown", "keyUp"] {
+                let tab = json!({ "type": kind, "key": "Tab", "code": "Tab", "windowsVirtualKeyCode": 9 });
+                self.browser.call("Input.dispatchKeyEvent", tab)?;
+            }
+            self.browser.value("void reached.add(document.activeElement)")?;
+        }
+        let missed = self.browser.value(
+            "[...document.querySelectorAll('input, select, button, textarea, canvas, summary')]\
+             .filter((e) => !e.disabled && !e.closest('[hidden]') && !(e.type === 'radio' && !e.checked) \
+             && !reached.has(e))\
+             .map((e) => e.outerHTML)",
+        )?;
+        hold(missed == json!([]), || format!("the tabulator does not reach {missed}"))?;
+        let role = self.browser.value("canvas.getAttribute('role')")?;
+        // Of a picture alone a screen reader would keep the arrow keys.
+        hold(role == "application", || format!("the picture is {role}, to which no keys are given"))
     }
 
     /// The addresses that the page asked for since it was last asked, but data of its own.

@@ -42,7 +42,7 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     page.key("ArrowDown")?;
     let said = page.text("pixel")?;
     hold(said.starts_with("column 300, row 201: "), || format!("the keys lead to '{said}'"))?;
-    page.everything_has_a_name(CONTROLS)?;
+    page.keys_reach_everything(CONTROLS)?;
     let requests = page.requests();
     hold(requests == [url.as_str()], || format!("the report asks for {requests:?}"))?;
     let thrown = page.thrown();

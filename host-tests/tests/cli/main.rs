@@ -9,6 +9,7 @@ mod calibrate;
 mod demo;
 mod dump;
 mod eval;
+mod eval_scenes;
 mod features;
 mod focus;
 #[cfg(unix)]

@@ -210,7 +210,7 @@ const CARGO: &str = r#"cargo() {
     [ "$1" = xtask ] || { command cargo "$@"; return; }
     shift
     manifest=$ROOT/Cargo.toml
-    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$manifest" --package xtask
+    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$manifest" -p xtask
     "$OWN_TARGET/debug/xtask" "$@"
 }
 "#;

@@ -1,7 +1,8 @@
 //! What the live page copies as Rust, as a user puts it into a program: it compiles, and is the configuration
 //! of the page's settings. The test of the page holds its text to [`configuration`].
 
-// Between the braces stands the page's own text.
+// Between the braces stands the page's own text, which names what it makes before it returns it.
+#[expect(clippy::let_and_return)]
 #[rustfmt::skip]
 fn configuration() -> stereopsis::matching::Config {
 use stereopsis::imaging::Noise;

@@ -76,17 +76,18 @@ macro_rules! c_api_of_obstacles {
             unsafe { $crate::ffi::obstacles_cameras(handle, monitor) }
         }
 
-        /// Sets the pose of the camera from this frame on, as from an inertial sensor: its downward pitch,
-        /// -500 to 500 thousandths of a radian, and its height above the ground, mm. Fails with
-        /// `STEREOPSIS_STATUS_OBSTACLE_POSE`.
+        /// Sets the pose of the camera from this frame on, as from an inertial sensor: its downward pitch
+        /// and its roll, positive where its right side is the lower one, -500 to 500 thousandths of a radian,
+        /// and its height above the ground, mm. Fails with `STEREOPSIS_STATUS_OBSTACLE_POSE`.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_obstacles_set_pose"))]
         pub unsafe extern "C" fn stereopsis_obstacles_set_pose(
             handle: *mut ObstaclesHandle,
             pitch_mrad: i16,
+            roll_mrad: i16,
             height_mm: u16,
         ) -> Status {
             // SAFETY: as above.
-            unsafe { $crate::ffi::obstacles_set_pose(handle, pitch_mrad, height_mm) }
+            unsafe { $crate::ffi::obstacles_set_pose(handle, pitch_mrad, roll_mrad, height_mm) }
         }
 
         /// Takes a row as it leaves the matcher; rows that are left out count as lost. Fails with

@@ -8,9 +8,9 @@ use crate::obstacles::{GroundSource, ObstacleConfig, ObstacleError};
 
 /// Ground: there is none, as for a camera that flies; every surface in range is an obstacle.
 pub const STEREOPSIS_GROUND_ABSENT: u8 = 0;
-/// Ground: the camera's `pitch_mrad` and `height_mm` are known, as from an inertial sensor.
+/// Ground: the camera's `pitch_mrad`, `roll_mrad` and `height_mm` are known, as from an inertial sensor.
 pub const STEREOPSIS_GROUND_GIVEN: u8 = 1;
-/// Ground: it is searched in each frame, within the heights and the pitch of the configuration.
+/// Ground: it is searched in each frame, within the heights, the pitch and the roll of the configuration.
 pub const STEREOPSIS_GROUND_SEARCHED: u8 = 2;
 
 /// Limits by which rows of disparity become ground, obstacles and drops, filled by
@@ -34,10 +34,15 @@ pub struct CObstacleConfig {
     pub most_height_mm: u16,
     /// Largest tangent of the camera's pitch above a ground that is searched, up or down, in thousandths.
     pub most_pitch: u16,
+    /// Largest tangent of the camera's roll above a ground that is searched, to either side, in thousandths.
+    pub most_roll: u16,
     /// Height of the camera above a ground that is given, mm.
     pub height_mm: u16,
     /// Downward pitch of the camera above a ground that is given, thousandths of a radian, -500 to 500.
     pub pitch_mrad: i16,
+    /// Roll of the camera above a ground that is given, thousandths of a radian, -500 to 500: positive where
+    /// its right side is the lower one.
+    pub roll_mrad: i16,
     /// Where the ground comes from: a `STEREOPSIS_GROUND_` number.
     pub ground: u8,
     /// Columns of pixels in a cell, 1 to 16.
@@ -77,8 +82,10 @@ impl From<ObstacleConfig> for CObstacleConfig {
             least_height_mm: 0,
             most_height_mm: 0,
             most_pitch: 0,
+            most_roll: 0,
             height_mm: 0,
             pitch_mrad: 0,
+            roll_mrad: 0,
             ground: STEREOPSIS_GROUND_ABSENT,
             cell_width: config.cell_width,
             cell_height: config.cell_height,
@@ -89,13 +96,14 @@ impl From<ObstacleConfig> for CObstacleConfig {
         };
         match config.ground {
             GroundSource::Absent => {}
-            GroundSource::Given { pitch_mrad, height_mm } => {
-                (c.ground, c.pitch_mrad, c.height_mm) = (STEREOPSIS_GROUND_GIVEN, pitch_mrad, height_mm);
+            GroundSource::Given { pitch_mrad, roll_mrad, height_mm } => {
+                c.ground = STEREOPSIS_GROUND_GIVEN;
+                (c.pitch_mrad, c.roll_mrad, c.height_mm) = (pitch_mrad, roll_mrad, height_mm);
             }
-            GroundSource::Searched { least_height_mm, most_height_mm, most_pitch } => {
+            GroundSource::Searched { least_height_mm, most_height_mm, most_pitch, most_roll } => {
                 c.ground = STEREOPSIS_GROUND_SEARCHED;
                 (c.least_height_mm, c.most_height_mm) = (least_height_mm, most_height_mm);
-                c.most_pitch = most_pitch;
+                (c.most_pitch, c.most_roll) = (most_pitch, most_roll);
             }
         }
         c
@@ -104,12 +112,13 @@ impl From<ObstacleConfig> for CObstacleConfig {
 
 impl CObstacleConfig {
     pub(super) fn checked(self) -> Result<ObstacleConfig, Status> {
-        let Self { least_height_mm, most_height_mm, most_pitch, height_mm, pitch_mrad, .. } = self;
+        let Self { least_height_mm, most_height_mm, most_pitch, most_roll, .. } = self;
+        let Self { height_mm, pitch_mrad, roll_mrad, .. } = self;
         let ground = match self.ground {
             STEREOPSIS_GROUND_ABSENT => GroundSource::Absent,
-            STEREOPSIS_GROUND_GIVEN => GroundSource::Given { pitch_mrad, height_mm },
+            STEREOPSIS_GROUND_GIVEN => GroundSource::Given { pitch_mrad, roll_mrad, height_mm },
             STEREOPSIS_GROUND_SEARCHED => {
-                GroundSource::Searched { least_height_mm, most_height_mm, most_pitch }
+                GroundSource::Searched { least_height_mm, most_height_mm, most_pitch, most_roll }
             }
             _ => return Err(Status::ObstacleGround),
         };

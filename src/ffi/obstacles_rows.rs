@@ -33,10 +33,15 @@ pub unsafe fn obstacles_begin_frame(handle: *mut ObstaclesHandle) -> Status {
 /// # Safety
 ///
 /// `handle` is as [`obstacles_deinit`](super::obstacles_deinit) asks.
-pub unsafe fn obstacles_set_pose(handle: *mut ObstaclesHandle, pitch_mrad: i16, height_mm: u16) -> Status {
+pub unsafe fn obstacles_set_pose(
+    handle: *mut ObstaclesHandle,
+    pitch_mrad: i16,
+    roll_mrad: i16,
+    height_mm: u16,
+) -> Status {
     let set = || {
         // SAFETY: the caller's promise.
-        unsafe { view_at(handle, null(), 0) }?.set_pose(pitch_mrad, height_mm)?;
+        unsafe { view_at(handle, null(), 0) }?.set_pose(pitch_mrad, roll_mrad, height_mm)?;
         Ok(Status::Ok)
     };
     either(set())

@@ -58,16 +58,20 @@ pub(super) fn blind_number(reason: Option<BlindReason>) -> u8 {
     reason.map_or(STEREOPSIS_BLIND_NOT, |reason| reason as u8)
 }
 
-/// Ground plane without roll, as a line: its parallax grows by `slope` from row to row.
+/// Ground plane: its parallax grows by `slope` from row to row and by `lean` from column to column.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[repr(C)]
 pub struct CGround {
-    /// Parallax at row 0, in 1/32 px, in 65536ths.
+    /// Parallax at row 0 in the column of the principal point, in 1/32 px, in 65536ths.
     pub level: i64,
     /// Growth of the parallax from a row to the next, in 1/32 px, in 65536ths.
     pub slope: i64,
+    /// Growth of the parallax from a column to the next, in 1/32 px, in 65536ths.
+    pub lean: i32,
     /// Downward pitch of the camera, radians.
     pub pitch_rad: f32,
+    /// Roll of the camera, radians: positive where its right side is the lower one.
+    pub roll_rad: f32,
     /// Variance of the parallax, squares of 1/32 px.
     pub variance: u32,
     /// Height of the camera above the ground, mm.
@@ -141,11 +145,20 @@ pub struct CScan {
 impl From<Option<Ground>> for CGround {
     fn from(ground: Option<Ground>) -> Self {
         let Some(ground) = ground else {
-            return Self { level: 0, slope: 0, pitch_rad: 0.0, variance: 0, height_mm: 0, is_known: 0 };
+            return Self {
+                level: 0,
+                slope: 0,
+                lean: 0,
+                pitch_rad: 0.0,
+                roll_rad: 0.0,
+                variance: 0,
+                height_mm: 0,
+                is_known: 0,
+            };
         };
-        let pitch_rad = ground.pitch_rad();
-        let Ground { level, slope, variance, height_mm, .. } = ground;
-        Self { level, slope, pitch_rad, variance, height_mm, is_known: 1 }
+        let (pitch_rad, roll_rad) = (ground.pitch_rad(), ground.roll_rad());
+        let Ground { level, slope, lean, variance, height_mm, .. } = ground;
+        Self { level, slope, lean, pitch_rad, roll_rad, variance, height_mm, is_known: 1 }
     }
 }
 

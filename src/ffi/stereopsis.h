@@ -373,12 +373,12 @@
 #define STEREOPSIS_GROUND_ABSENT 0
 
 /**
- * Ground: the camera's `pitch_mrad` and `height_mm` are known, as from an inertial sensor.
+ * Ground: the camera's `pitch_mrad`, `roll_mrad` and `height_mm` are known, as from an inertial sensor.
  */
 #define STEREOPSIS_GROUND_GIVEN 1
 
 /**
- * Ground: it is searched in each frame, within the heights and the pitch of the configuration.
+ * Ground: it is searched in each frame, within the heights, the pitch and the roll of the configuration.
  */
 #define STEREOPSIS_GROUND_SEARCHED 2
 
@@ -1634,6 +1634,10 @@ typedef struct stereopsis_obstacles_config {
    */
   uint16_t most_pitch;
   /**
+   * Largest tangent of the camera's roll above a ground that is searched, to either side, in thousandths.
+   */
+  uint16_t most_roll;
+  /**
    * Height of the camera above a ground that is given, mm.
    */
   uint16_t height_mm;
@@ -1641,6 +1645,11 @@ typedef struct stereopsis_obstacles_config {
    * Downward pitch of the camera above a ground that is given, thousandths of a radian, -500 to 500.
    */
   int16_t pitch_mrad;
+  /**
+   * Roll of the camera above a ground that is given, thousandths of a radian, -500 to 500: positive where
+   * its right side is the lower one.
+   */
+  int16_t roll_mrad;
   /**
    * Where the ground comes from: a `STEREOPSIS_GROUND_` number.
    */
@@ -1672,11 +1681,11 @@ typedef struct stereopsis_obstacles_config {
 } stereopsis_obstacles_config;
 
 /**
- * Ground plane without roll, as a line: its parallax grows by `slope` from row to row.
+ * Ground plane: its parallax grows by `slope` from row to row and by `lean` from column to column.
  */
 typedef struct stereopsis_ground {
   /**
-   * Parallax at row 0, in 1/32 px, in 65536ths.
+   * Parallax at row 0 in the column of the principal point, in 1/32 px, in 65536ths.
    */
   int64_t level;
   /**
@@ -1684,9 +1693,17 @@ typedef struct stereopsis_ground {
    */
   int64_t slope;
   /**
+   * Growth of the parallax from a column to the next, in 1/32 px, in 65536ths.
+   */
+  int32_t lean;
+  /**
    * Downward pitch of the camera, radians.
    */
   float pitch_rad;
+  /**
+   * Roll of the camera, radians: positive where its right side is the lower one.
+   */
+  float roll_rad;
   /**
    * Variance of the parallax, squares of 1/32 px.
    */
@@ -2580,12 +2597,13 @@ stereopsis_status stereopsis_obstacles_cameras(struct stereopsis_obstacles *hand
                                                struct stereopsis_pair_monitor *monitor);
 
 /**
- * Sets the pose of the camera from this frame on, as from an inertial sensor: its downward pitch,
- * -500 to 500 thousandths of a radian, and its height above the ground, mm. Fails with
- * `STEREOPSIS_STATUS_OBSTACLE_POSE`.
+ * Sets the pose of the camera from this frame on, as from an inertial sensor: its downward pitch
+ * and its roll, positive where its right side is the lower one, -500 to 500 thousandths of a radian,
+ * and its height above the ground, mm. Fails with `STEREOPSIS_STATUS_OBSTACLE_POSE`.
  */
 stereopsis_status stereopsis_obstacles_set_pose(struct stereopsis_obstacles *handle,
                                                 int16_t pitch_mrad,
+                                                int16_t roll_mrad,
                                                 uint16_t height_mm);
 
 /**
@@ -2999,7 +3017,7 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_start(struct stereopsis_obstacles *handle, const struct stereopsis_obstacles_config *config, const struct stereopsis_rig *rig, uint16_t width, uint16_t height, uint16_t largest_px); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_begin_frame(struct stereopsis_obstacles *handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_cameras(struct stereopsis_obstacles *handle, struct stereopsis_pair_monitor *monitor); \
-  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_set_pose(struct stereopsis_obstacles *handle, int16_t pitch_mrad, uint16_t height_mm); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_set_pose(struct stereopsis_obstacles *handle, int16_t pitch_mrad, int16_t roll_mrad, uint16_t height_mm); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_push(struct stereopsis_obstacles *handle, const struct stereopsis_row *row); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_finish(struct stereopsis_obstacles *handle, uint8_t *blind); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_obstacles_ground(struct stereopsis_obstacles *handle, struct stereopsis_ground *ground); \

@@ -13,11 +13,13 @@ pub enum GroundSource {
     Given {
         /// Downward pitch of the camera, thousandths of a radian, -500 to 500.
         pitch_mrad: i16,
+        /// Roll of the camera, thousandths of a radian, -500 to 500: positive where its right side is the
+        /// lower one.
+        roll_mrad: i16,
         /// Height of the camera above the ground, mm.
         height_mm: u16,
     },
-    /// The plane is searched in the v-disparity of each frame; its roll about the optical axis is taken to be
-    /// none.
+    /// The plane is searched in the v-disparity of each frame.
     Searched {
         /// Smallest height of the camera above the ground, mm.
         least_height_mm: u16,
@@ -25,6 +27,8 @@ pub enum GroundSource {
         most_height_mm: u16,
         /// Largest tangent of the camera's pitch, up or down, in thousandths.
         most_pitch: u16,
+        /// Largest tangent of the camera's roll, to either side, in thousandths; 0 where it is upright.
+        most_roll: u16,
     },
 }
 
@@ -94,8 +98,8 @@ impl ObstacleConfig {
         }
         let pose = match self.ground {
             GroundSource::Absent => true,
-            GroundSource::Given { pitch_mrad, height_mm } => {
-                height_mm > 0 && pitch_mrad.unsigned_abs() <= 500
+            GroundSource::Given { pitch_mrad, roll_mrad, height_mm } => {
+                height_mm > 0 && pitch_mrad.unsigned_abs().max(roll_mrad.unsigned_abs()) <= 500
             }
             GroundSource::Searched { least_height_mm, most_height_mm, .. } => {
                 0 < least_height_mm && least_height_mm <= most_height_mm
@@ -116,7 +120,7 @@ impl ObstacleConfig {
 
 impl Default for ObstacleConfig {
     /// Cells of 4 x 5 px, a deviation of 0.15 px as all methods have it, a ground 0.1 m to 3 m below a camera
-    /// that is pitched by at most 27 degrees, obstacles and drops of 5 cm, and 16 sectors.
+    /// that is pitched by at most 27 degrees and rolled by at most 7, obstacles and drops of 5 cm, and 16 sectors.
     ///
     /// The least area is four matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
     /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth
@@ -127,7 +131,12 @@ impl Default for ObstacleConfig {
             cell_height: 5,
             sigma_steps: 5,
             min_confidence: 0,
-            ground: GroundSource::Searched { least_height_mm: 100, most_height_mm: 3000, most_pitch: 500 },
+            ground: GroundSource::Searched {
+                least_height_mm: 100,
+                most_height_mm: 3000,
+                most_pitch: 500,
+                most_roll: 120,
+            },
             obstacle_mm: 50,
             drop_mm: 50,
             headroom_mm: u16::MAX,
@@ -148,7 +157,7 @@ pub enum ObstacleError {
     Cells,
     /// The number of sectors is not 1 to 32.
     Sectors,
-    /// The given height is zero, the given pitch is over 500 mrad, or the heights searched are in no order.
+    /// The given height is zero, the given pitch or roll is over 500 mrad, or the heights searched are in no order.
     Pose,
     /// The deviation is not 1 to 320 steps, or the height of an obstacle or the depth of a drop is zero.
     Limits,
@@ -167,7 +176,7 @@ pub enum ObstacleError {
 error_text!(ObstacleError {
     Self::Cells => "a cell must have sides of 1 to 16 px and at most 255 px",
     Self::Sectors => "there must be 1 to 32 sectors",
-    Self::Pose => "the ground needs a height over zero, a pitch of at most 500 mrad, and heights in order",
+    Self::Pose => "the ground needs a height over zero, a pitch and a roll of at most 500 mrad, and heights in order",
     Self::Limits => "the deviation must be 1 to 320 steps, and obstacles and drops over 0 mm",
     Self::Columns { needed } => "the memory must hold {needed} columns of cells",
     Self::Rows { needed } => "the memory must hold {needed} rows of cells, at most 255",

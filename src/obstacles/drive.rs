@@ -1,9 +1,9 @@
 //! From free space to a decision: go on, slow down, stop, or nothing is known.
 
+use super::column::StixelKind;
 use super::config::GroundSource;
 use super::finder::ObstaclesView;
 use super::held::{Held, Hysteresis};
-use super::stixel::StixelKind;
 use super::watchdog::BlindReason;
 
 /// How a vehicle drives and brakes.
@@ -164,7 +164,7 @@ impl Corridor {
             }
             if inside(needed_mm) {
                 found.columns += 1;
-                let seen = setup.seen_mm(column, ground.as_ref()).is_some_and(|mm| mm >= needed_mm);
+                let seen = setup.seen_mm(x, column, ground.as_ref()).is_some_and(|mm| mm >= needed_mm);
                 let ends_there = column.is_supported() && (depth <= needed_mm || column.is_seen_up_to());
                 found.unseen += usize::from(!seen && !ends_there);
             }

@@ -1,11 +1,12 @@
 //! Rows of a frame in, its ground, stixels and sectors out.
 
+use super::column::Column;
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::grid::{Filling, fill};
 use super::ground::{CarriedGround, Ground};
 use super::setup::Setup;
 use super::state::ObstaclesState;
-use super::stixel::{Column, Labelling};
+use super::stixel::Labelling;
 use super::surfaces::stixels;
 use super::v_disparity::{BINS, count, fit};
 use super::watchdog::{BlindReason, Watchdog};
@@ -193,9 +194,10 @@ impl ObstaclesView<'_> {
     }
 
     /// Sets the pose of the camera from this frame on, as [`GroundSource::Given`] has it.
-    pub fn set_pose(&mut self, pitch_mrad: i16, height_mm: u16) -> Result<(), ObstacleError> {
+    pub fn set_pose(&mut self, pitch_mrad: i16, roll_mrad: i16, height_mm: u16) -> Result<(), ObstacleError> {
         let Some(setup) = self.setup() else { return Ok(()) };
-        let config = ObstacleConfig { ground: GroundSource::Given { pitch_mrad, height_mm }, ..setup.config };
+        let ground = GroundSource::Given { pitch_mrad, roll_mrad, height_mm };
+        let config = ObstacleConfig { ground, ..setup.config };
         config.check()?;
         self.state.setup.config = config;
         Ok(())
@@ -236,13 +238,13 @@ impl ObstaclesView<'_> {
     fn close(&mut self, setup: &Setup, y: usize) {
         let config = &setup.config;
         let row = y.checked_div(usize::from(config.cell_height)).unwrap_or(usize::MAX);
-        let area = config.cell_width.wrapping_mul(config.cell_height);
+        let most = config.cell_width.div_ceil(3).wrapping_mul(config.cell_height);
         let cells = self.cells.chunks_exact_mut(setup.columns.max(1)).nth(row).unwrap_or_default();
         if row >= setup.rows {
             return;
         }
         for (cell, filling) in cells.iter_mut().zip(self.filling.iter_mut()) {
-            *cell = filling.answer(area);
+            *cell = filling.answer(most);
             self.state.watchdog.answered += u32::from(cell.is_some());
             *filling = Filling::EMPTY;
         }
@@ -260,20 +262,18 @@ impl ObstaclesView<'_> {
         self.state.blind = self.state.watchdog.judge(config, setup.height as u32, all);
         let sound = self.state.blind.is_none();
         let cells = setup.cells(self.cells);
-        let at = [cells.halves(setup.rows / 2), cells.halves(setup.rows.saturating_sub(1))];
-        let carried = self.state.carried.ground;
         let measured = match config.ground {
             GroundSource::Absent => None,
-            GroundSource::Given { pitch_mrad, height_mm } => {
+            GroundSource::Given { pitch_mrad, roll_mrad, height_mm } => {
                 self.state.carried = CarriedGround::NONE;
-                Ground::given(pitch_mrad, height_mm, rig)
+                Ground::given(pitch_mrad, roll_mrad, height_mm, rig)
             }
             GroundSource::Searched { .. } if sound => {
-                fit(&cells, self.bins, setup.shift, carried, &config.ground, rig)
+                fit(&cells, self.bins, setup.shift, self.state.carried.ground, &config.ground, rig)
             }
             GroundSource::Searched { .. } => None,
         };
-        self.state.carried.update(measured, at, rig);
+        self.state.carried.update(measured, cells.corners(), rig);
         let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins);
         let columns = self.columns.get_mut(..setup.columns).unwrap_or_default();
         stixels(&labelling, columns, self.labels.get_mut(..setup.rows).unwrap_or_default());

@@ -1,4 +1,6 @@
 //! Rows of pixels -> cells, each with the nearer of its two largest groups of like disparities.
+//!
+//! Of a cell every third column counts: answers side by side share most of their windows.
 
 use crate::units::{Disparity, PixelFlags};
 
@@ -65,8 +67,10 @@ impl Filling {
     fn take(&mut self, disparities: &[Disparity], flags: &[PixelFlags]) -> u8 {
         let [mut first, _] = self.0;
         let mut all = 0;
-        for (d, flags) in disparities.iter().zip(flags) {
+        for flags in flags {
             all |= flags.bits();
+        }
+        for (d, flags) in disparities.iter().zip(flags).step_by(3) {
             if d.is_some() && !flags.intersects(LEFT_OUT) && !first.take(d.raw()) {
                 self.take_second(d.raw());
             }
@@ -75,11 +79,11 @@ impl Filling {
         all
     }
 
-    /// Adds four pixels of which none has a flag that leaves it out.
+    /// Adds the pixels that count of four without a flag that leaves them out.
     #[inline(always)]
-    fn take_four(&mut self, disparities: &[Disparity; 4]) {
+    fn take_four(&mut self, &[a, _, _, b]: &[Disparity; 4]) {
         let [mut first, _] = self.0;
-        for d in disparities {
+        for d in [a, b] {
             if d.is_some() && !first.take(d.raw()) {
                 self.take_second(d.raw());
             }
@@ -87,9 +91,9 @@ impl Filling {
         self.0[0] = first;
     }
 
-    /// The nearer of the groups that hold a quarter of the cell's `area`.
-    pub(super) fn answer(&self, area: u8) -> Disparity {
-        let least = u32::from(area.div_ceil(4));
+    /// The nearer of the groups that hold a quarter of the `count` pixels of the cell that count.
+    pub(super) fn answer(&self, count: u8) -> Disparity {
+        let least = u32::from(count.div_ceil(4));
         let nearest = self.0.iter().filter_map(|group| group.mean(least)).max();
         nearest.map_or(Disparity::NONE, Disparity::from_raw)
     }
@@ -115,14 +119,14 @@ pub(super) fn fill(
         for (cell, ((disparities, flags), sure)) in
             cells.iter_mut().zip(pixels.zip(confidences.chunks_exact(width)))
         {
-            for ((d, flags), &confidence) in disparities.iter().zip(flags).zip(sure) {
-                let d = if confidence < min_confidence { Disparity::NONE } else { *d };
-                all |= cell.take(&[d], &[*flags]);
+            for (place, ((d, flags), &confidence)) in disparities.iter().zip(flags).zip(sure).enumerate() {
+                let counts = confidence >= min_confidence && place.is_multiple_of(3);
+                all |= cell.take(&[if counts { *d } else { Disparity::NONE }], &[*flags]);
             }
         }
     } else if let 4 = width {
         // The default width, unrolled, with four flags in a word.
-        const LEFT_OUT_4: u32 = 0x0101_0101 * LEFT_OUT.bits() as u32;
+        const LEFT_OUT_4: u32 = 0x0100_0001 * LEFT_OUT.bits() as u32;
         let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
         let mut all_4 = 0;
         for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
@@ -151,7 +155,10 @@ mod tests {
     #[test]
     fn a_cell_answers_with_its_nearer_large_group() {
         let mut cell = Filling::EMPTY;
-        cell.take(&[320, 330, 640, 641, 900, 322].map(Disparity::from_raw), &[PixelFlags::CLEAR; 6]);
+        cell.take(
+            &[320, 0, 0, 330, 0, 0, 640, 0, 0, 641, 0, 0, 900, 0, 0, 322].map(Disparity::from_raw),
+            &[PixelFlags::CLEAR; 16],
+        );
         // Quarters of 8 pixels: (320 + 330 + 322) / 3 and (640 + 641) / 2 rounded up.
         assert_eq!(cell.answer(8), Disparity::from_raw(641));
         assert_eq!(cell.answer(12), Disparity::from_raw(324));

@@ -1,4 +1,4 @@
-//! The ground plane as a line of the v-disparity (Labayrade, Aubert & Tarel 2002).
+//! The ground plane as a line of the v-disparity (Labayrade, Aubert & Tarel 2002) that leans with the camera.
 
 use super::config::GroundSource;
 use crate::depth::DepthScale;
@@ -42,21 +42,25 @@ impl RigNumbers {
     }
 }
 
-/// A ground plane without roll: its parallax `d + doffs` grows by a constant from row to row.
+/// A ground plane: its parallax `d + doffs` grows by a constant from row to row, and by another one from
+/// column to column.
 ///
-/// With the camera at height `H`, pitched down by `theta`, and row `v`:
+/// With the camera at height `H`, pitched down by `theta`, rolled to the right by `rho`, at column `u` and row
+/// `v`:
 ///
-/// `d + doffs = b / H (cos theta (v - cy) + f sin theta)`
+/// `d + doffs = b / H (sin rho cos theta (u - cx) + cos rho cos theta (v - cy) + f sin theta)`
 ///
-/// so the slope gives the height and the parallax at row `cy` gives the pitch.
+/// so the growths give the height and the roll, and the parallax at the principal point gives the pitch.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Ground {
-    /// Parallax at row 0, steps of disparity in 65536ths.
+    /// Parallax at row 0 in the column of the principal point, steps of disparity in 65536ths.
     pub level: i64,
     /// Growth of the parallax from a row to the next, steps of disparity in 65536ths.
     pub slope: i64,
+    /// Growth of the parallax from a column to the next, steps of disparity in 65536ths.
+    pub lean: i32,
     /// Variance of the parallax, squares of steps of disparity.
     pub variance: u32,
     /// Height of the camera above the ground, mm.
@@ -66,11 +70,23 @@ pub struct Ground {
 }
 
 impl Ground {
-    /// Parallax of the ground at half-row `halves` (row `halves / 2`), whole steps of disparity.
-    pub(super) fn parallax(&self, halves: i64) -> i32 {
+    /// Parallax of the ground at half-row `halves` (row `halves / 2`) in the column of the principal point,
+    /// 256ths of a step of disparity.
+    pub(super) fn parallax_256ths(&self, halves: i64) -> i32 {
         // The slope is below 2^30 and rows are below 2^16: no wrap.
-        let exact = self.level.wrapping_add(self.slope.wrapping_mul(halves) / 2) >> 16;
-        exact.clamp(-(1 << 20), 1 << 20) as i32
+        let exact = self.level.wrapping_add(self.slope.wrapping_mul(halves) / 2) >> 8;
+        exact.clamp(-(1 << 28), 1 << 28) as i32
+    }
+
+    /// What the ground's parallax has more at a position to the right of the principal point, sixteenths of a
+    /// px, than in its column, 256ths of a step.
+    pub(super) fn beside_256ths(&self, right_16ths: i64) -> i32 {
+        ((i64::from(self.lean) * right_16ths) >> 12).clamp(-(1 << 28), 1 << 28) as i32
+    }
+
+    /// Parallax of the ground at a half-row and a position to the right, whole steps of disparity.
+    pub(super) fn parallax(&self, halves: i64, right_16ths: i64) -> i32 {
+        (self.parallax_256ths(halves) + self.beside_256ths(right_16ths)) >> 8
     }
 
     /// Downward pitch of the camera, radians.
@@ -78,43 +94,63 @@ impl Ground {
         atan(self.pitch_tangent as f32 / 65_536.0)
     }
 
-    /// A plane with this line; `None` where no camera in front of a plane sees such a one.
-    pub(super) fn from_line(level: i64, slope: i64, variance: u32, rig: &RigNumbers) -> Option<Self> {
-        let at_centre = level.wrapping_add(slope.wrapping_mul(rig.cy_halves.into()) / 2);
-        let inclination = at_centre.wrapping_mul(16).checked_div(rig.focal_16ths.into())?;
-        if !(1..STEEPEST).contains(&slope) || inclination.abs() >= STEEPEST {
-            return None;
-        }
-        let norm = ((slope * slope + inclination * inclination) as u64).isqrt();
-        let scaled = (i64::from(rig.baseline_16ths) * 131_072) as u64;
-        let height_mm = u16::try_from(scaled.checked_div(norm)?).ok()?;
-        let pitch_tangent = i32::try_from((inclination * 65_536).checked_div(slope)?).ok()?;
-        Some(Self { level, slope, variance, height_mm, pitch_tangent })
+    /// Roll of the camera, radians: positive where its right side is the lower one.
+    pub fn roll_rad(&self) -> f32 {
+        atan(self.lean as f32 / self.slope.max(1) as f32)
     }
 
-    /// The plane below a camera of known pose, with no uncertainty but that of 1 step.
-    pub(super) fn given(pitch_mrad: i16, height_mm: u16, rig: &RigNumbers) -> Option<Self> {
-        let angle = f32::from(pitch_mrad) / 1000.0;
-        let square = angle * angle;
-        // The series of the tangent: 0.00005 off at half a radian.
-        let tangent = angle * (1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0 + square * (17.0 / 315.0))));
-        let cosine = 1.0 / nalgebra::ComplexField::sqrt(1.0 + tangent * tangent);
-        let per_row = rig.baseline_16ths as f32 / 16.0 / f32::from(height_mm.max(1)) * cosine;
-        let slope = round(per_row * f32::from(Disparity::ONE) * 65_536.0);
-        let above_centre = tangent * rig.focal_16ths as f32 / 16.0 - rig.cy_halves as f32 / 2.0;
-        if slope.abs() >= STEEPEST as f32 {
+    /// A plane with this parallax; `None` where no camera in front of a plane sees such a one.
+    pub(super) fn from_line(
+        level: i64,
+        slope: i64,
+        lean: i64,
+        variance: u32,
+        rig: &RigNumbers,
+    ) -> Option<Self> {
+        let at_centre = level.wrapping_add(slope.wrapping_mul(rig.cy_halves.into()) / 2);
+        let inclination = at_centre.wrapping_mul(16).checked_div(rig.focal_16ths.into())?;
+        if !(1..STEEPEST).contains(&slope) || inclination.abs() >= STEEPEST || lean.abs() > slope {
             return None;
         }
-        let ground = Self::from_line(round(slope * above_centre) as i64, slope as i64, 1, rig)?;
+        let down = (slope * slope + lean * lean) as u64;
+        let norm = (down + (inclination * inclination) as u64).isqrt();
+        let scaled = (i64::from(rig.baseline_16ths) * 131_072) as u64;
+        let height_mm = u16::try_from(scaled.checked_div(norm)?).ok()?;
+        let pitch_tangent = i32::try_from((inclination * 65_536).checked_div(down.isqrt() as i64)?).ok()?;
+        Some(Self { level, slope, lean: lean as i32, variance, height_mm, pitch_tangent })
+    }
+
+    /// The plane below a camera of known pose, thousandths of a radian, with no uncertainty but that of 1
+    /// step.
+    pub(super) fn given(pitch_mrad: i16, roll_mrad: i16, height_mm: u16, rig: &RigNumbers) -> Option<Self> {
+        // The series of the tangent: 0.00005 off at half a radian.
+        let tangent = |mrad: i16| {
+            let angle = f32::from(mrad) / 1000.0;
+            let square = angle * angle;
+            angle * (1.0 + square * (1.0 / 3.0 + square * (2.0 / 15.0 + square * (17.0 / 315.0))))
+        };
+        let cosine = |tangent: f32| 1.0 / nalgebra::ComplexField::sqrt(1.0 + tangent * tangent);
+        let (pitch, roll) = (tangent(pitch_mrad), tangent(roll_mrad));
+        let per_px = rig.baseline_16ths as f32 / 16.0 / f32::from(height_mm.max(1)) * cosine(pitch);
+        let down = per_px * f32::from(Disparity::ONE) * 65_536.0;
+        if down >= STEEPEST as f32 {
+            return None;
+        }
+        let slope = round(down * cosine(roll));
+        let at_centre = down * pitch * rig.focal_16ths as f32 / 16.0;
+        let level = at_centre - slope * rig.cy_halves as f32 / 2.0;
+        let lean = round(slope * roll);
+        let ground = Self::from_line(round(level) as i64, slope as i64, lean as i64, 1, rig)?;
         Some(Self { height_mm, ..ground })
     }
 
     /// Whether the plane is within what a search allows.
     pub(super) fn is_within(&self, source: &GroundSource) -> bool {
         match *source {
-            GroundSource::Searched { least_height_mm, most_height_mm, most_pitch } => {
+            GroundSource::Searched { least_height_mm, most_height_mm, most_pitch, most_roll } => {
                 (least_height_mm..=most_height_mm).contains(&self.height_mm)
                     && i64::from(self.pitch_tangent).abs() * 1000 <= i64::from(most_pitch) * 65_536
+                    && i64::from(self.lean).abs() * 1000 <= i64::from(most_roll) * self.slope
             }
             _ => true,
         }
@@ -143,9 +179,10 @@ impl CarriedGround {
     /// Frames for which a ground is carried without being measured.
     const MOST_HELD: u8 = 8;
 
-    /// Takes what a frame measured. A measurement within three deviations at both half-rows of `at` is
-    /// averaged with what was carried, by their variances; any other one replaces it.
-    pub(super) fn update(&mut self, measured: Option<Ground>, at: [i64; 2], rig: &RigNumbers) {
+    /// Takes what a frame measured. A measurement within three deviations at all of `at`, half-rows and
+    /// positions to the right, is averaged with what was carried, by their variances; any other one replaces
+    /// it.
+    pub(super) fn update(&mut self, measured: Option<Ground>, at: [(i64, i64); 4], rig: &RigNumbers) {
         let carried = self.ground.map(|g| Ground { variance: g.variance + Self::PER_FRAME, ..g });
         let (Some(old), Some(new)) = (carried, measured) else {
             self.age = if measured.is_some() { 0 } else { self.age.saturating_add(1) };
@@ -154,14 +191,16 @@ impl CarriedGround {
         };
         self.age = 0;
         let both = i64::from(old.variance) + i64::from(new.variance);
-        let agree = at.iter().all(|&halves| {
-            let apart = i64::from(new.parallax(halves) - old.parallax(halves));
+        let agree = at.iter().all(|&(halves, right)| {
+            let apart = i64::from(new.parallax(halves, right) - old.parallax(halves, right));
             apart * apart <= 9 * both
         });
         let gain = (256 * i64::from(old.variance)).checked_div(both).unwrap_or(256);
         let mix = |old: i64, new: i64| old + (((new - old) * gain) >> 8);
         let variance = (i64::from(old.variance) * (256 - gain) / 256).max(1) as u32;
-        let mixed = Ground::from_line(mix(old.level, new.level), mix(old.slope, new.slope), variance, rig);
+        let (level, slope) = (mix(old.level, new.level), mix(old.slope, new.slope));
+        let lean = mix(old.lean.into(), new.lean.into());
+        let mixed = Ground::from_line(level, slope, lean, variance, rig);
         self.ground = if agree { mixed.or(measured) } else { measured };
     }
 }

@@ -49,6 +49,7 @@
 //! ```
 
 mod config;
+mod column;
 mod grid;
 mod ground;
 mod v_disparity;
@@ -64,6 +65,7 @@ mod scan;
 mod held;
 mod drive;
 
+pub use column::{Column, StixelKind};
 pub use config::{GroundSource, ObstacleConfig, ObstacleError};
 pub use drive::{Decision, DriveConfig, DriveRule, Verdict, speed_mm_s};
 pub use finder::{Obstacles, ObstaclesView};
@@ -73,5 +75,4 @@ pub use held::{FreeSpace, Hysteresis};
 pub use scan::LaserScan;
 pub use sector::{Sector, SectorState, Stixel};
 pub use state::ObstaclesState;
-pub use stixel::{Column, StixelKind};
 pub use watchdog::BlindReason;

@@ -1,10 +1,10 @@
 //! Nearest obstacle per sector of the field of view, and stixels in pixels and millimetres.
 
+use super::column::{Column, StixelKind};
 use super::config::ObstacleConfig;
 use super::finder::ObstaclesView;
 use super::ground::Ground;
 use super::setup::Setup;
-use super::stixel::{Column, StixelKind};
 use crate::units::Disparity;
 
 /// What a sector shows.
@@ -80,9 +80,8 @@ impl Setup {
 
     /// Distance to the right of the optical axis of what column `x` of cells shows at a depth, mm.
     pub(super) fn across_mm(&self, x: usize, depth_mm: u16) -> i32 {
-        let width = i64::from(self.config.cell_width);
-        let column = 16 * width * x as i64 + 8 * (width - 1) - i64::from(self.rig.cx_16ths);
-        (i64::from(depth_mm) * column).checked_div(self.rig.focal_16ths.into()).unwrap_or(0) as i32
+        let right = self.cells(&[]).right_16ths(x);
+        (i64::from(depth_mm) * right).checked_div(self.rig.focal_16ths.into()).unwrap_or(0) as i32
     }
 
     /// Deviation of a column's depth, mm.
@@ -93,11 +92,16 @@ impl Setup {
         sigma.unwrap_or(0).min(u16::MAX.into()) as u16
     }
 
-    /// Depth up to which a column sees the ground, mm; `None` where it does not.
-    pub(super) fn seen_mm(&self, column: &Column, ground: Option<&Ground>) -> Option<u16> {
-        let row = usize::from(column.seen);
-        let halves = i64::from(self.config.cell_height) * (2 * row as i64 + 1) - 1;
-        (row < self.rows).then(|| ground.map_or(u16::MAX, |g| self.depth_mm(g.parallax(halves))))
+    /// Parallax of the ground in a cell.
+    fn ground_at(&self, ground: &Ground, x: usize, row: u8) -> i32 {
+        let cells = self.cells(&[]);
+        ground.parallax(cells.halves(row.into()), cells.right_16ths(x))
+    }
+
+    /// Depth up to which column `x` sees the ground, mm; `None` where it does not.
+    pub(super) fn seen_mm(&self, x: usize, column: &Column, ground: Option<&Ground>) -> Option<u16> {
+        let depth = |ground: &Ground| self.depth_mm(self.ground_at(ground, x, column.seen));
+        (usize::from(column.seen) < self.rows).then(|| ground.map_or(u16::MAX, depth))
     }
 
     /// The sector of a bearing.
@@ -172,7 +176,7 @@ impl ObstaclesView<'_> {
                 continue;
             }
             columns += 1;
-            if let Some(seen) = setup.seen_mm(column, ground.as_ref()) {
+            if let Some(seen) = setup.seen_mm(x, column, ground.as_ref()) {
                 seeing += 1;
                 seen_mm = seen_mm.min(seen);
             }
@@ -193,17 +197,31 @@ impl ObstaclesView<'_> {
         sector.state = if drop { SectorState::Drop } else { SectorState::Obstacle };
         sector.bearing_mrad = self.bearings.get(x).copied().unwrap_or_default();
         sector.depth_mm = setup.depth_mm(column.parallax);
-        sector.sigma_mm = setup.sigma_mm(column);
+        sector.sigma_mm = setup.sigma_mm(&self.chosen(&setup, index, column));
         let across = i64::from(setup.across_mm(x, sector.depth_mm));
         let along = i64::from(sector.depth_mm);
         sector.range_mm = ((along * along + across * across) as u64).isqrt().min(u16::MAX.into()) as u16;
         let area = u32::from(setup.config.cell_width) * u32::from(setup.config.cell_height);
         sector.pixels = u32::from(column.surface) * area;
         if let Some(ground) = ground.filter(|_| !drop) {
-            let halves = i64::from(setup.config.cell_height) * (2 * i64::from(column.top) + 1) - 1;
-            sector.height_mm = ground.height_above(column.parallax, ground.parallax(halves));
+            let below = setup.ground_at(&ground, x, column.top);
+            sector.height_mm = ground.height_above(column.parallax, below);
         }
         sector
+    }
+
+    /// The nearest column of a sector, with what it is nearer than the mean of those within a px of it added
+    /// to its deviation: the nearest of several is nearer by chance.
+    fn chosen(&self, setup: &Setup, index: usize, nearest: &Column) -> Column {
+        let all = self.columns.iter().zip(self.bearings.iter()).take(setup.columns);
+        let inside =
+            all.filter(|(column, bearing)| setup.sector_of(**bearing) == index && column.is_supported());
+        let ahead = inside.map(|(column, _)| nearest.parallax - column.parallax);
+        let of_it = ahead.filter(|&ahead| ahead <= Disparity::ONE.into());
+        let (count, sum) = of_it.fold((0, 0), |(count, sum), ahead| (count + 1, sum + ahead));
+        let (ahead, sigma) = (sum.checked_div(count).unwrap_or(0), i32::from(nearest.sigma));
+        let sigma = (sigma * sigma + ahead * ahead).isqrt().min(255) as u8;
+        Column { sigma, ..*nearest }
     }
 
     /// Depth beyond which no distance is told, mm.

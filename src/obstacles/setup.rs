@@ -75,6 +75,8 @@ impl Setup {
             columns: self.columns,
             rows: self.rows,
             cell_height: self.config.cell_height.into(),
+            cell_width: self.config.cell_width.into(),
+            cx_16ths: self.rig.cx_16ths.into(),
             offset: self.offset_steps,
             farthest: i32::from(ObstacleConfig::FARTHEST_SIGMAS * self.config.sigma_steps),
         }

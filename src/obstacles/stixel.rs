@@ -1,68 +1,12 @@
 //! Stixels: a column of cells as ground, obstacle or drop, and beyond (Badino, Franke & Pfeiffer 2009), by
 //! the Viterbi algorithm in integers.
 
+use super::column::{Column, MOST_GAP, StixelKind};
 use super::config::{GroundSource, ObstacleConfig};
 use super::ground::Ground;
-use super::interval::Interval;
+use super::interval::{Between, Interval};
 use super::v_disparity::Cells;
 use crate::units::Disparity;
-
-/// What stands in a column.
-#[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[repr(u8)]
-pub enum StixelKind {
-    /// Nothing that enough cells show; that is not to say that the column is free.
-    #[default]
-    Nothing,
-    /// A surface that rises above the ground.
-    Obstacle,
-    /// The edge of a surface that is deeper than the ground.
-    Drop,
-}
-
-/// The nearest obstacle or drop of a column of cells, in cells.
-#[derive(Clone, Copy, Default, Debug)]
-pub struct Column {
-    pub(super) kind: StixelKind,
-    pub(super) top: u8,
-    pub(super) base: u8,
-    /// Cells of the segment that have an answer.
-    pub(super) cells: u8,
-    /// Uppermost row to which the ground is seen without a gap from the lowest row on; the number of rows
-    /// where it is not.
-    pub(super) seen: u8,
-    /// Deviation, steps, at most 255.
-    pub(super) sigma: u8,
-    /// Parallax, steps; of a drop that of the ground at its edge.
-    pub(super) parallax: i32,
-    /// Cells of the connected surface that it belongs to; 0 where that is too small.
-    pub(super) surface: u16,
-}
-
-impl Column {
-    pub(super) const EMPTY: Self = Self {
-        kind: StixelKind::Nothing,
-        top: 0,
-        base: 0,
-        cells: 0,
-        seen: 0,
-        sigma: 0,
-        parallax: 0,
-        surface: 0,
-    };
-
-    /// Whether it belongs to a surface of enough cells.
-    pub(super) fn is_supported(&self) -> bool {
-        self.surface > 0
-    }
-
-    /// Whether the ground is seen up to its lower edge.
-    pub(super) fn is_seen_up_to(&self) -> bool {
-        u16::from(self.seen) <= u16::from(self.base) + 1 + u16::from(MOST_GAP)
-    }
-}
 
 /// What contradicting a label costs at most, at three standard deviations.
 const MOST: i32 = 16;
@@ -70,8 +14,8 @@ const MOST: i32 = 16;
 const CHANGE: u32 = 16;
 /// What a cell without an answer costs as anything but beyond.
 const UNANSWERED: [u32; 4] = [8, 8, 8, 0];
-/// Rows without ground that do not end what is seen of it.
-const MOST_GAP: u8 = 2;
+/// Rows of pixels from which on a surface is high: two matching windows.
+const HIGH: u32 = 18;
 /// Fewest cells of a segment.
 const FEWEST_CELLS: u8 = 2;
 
@@ -108,8 +52,7 @@ impl<'a> Labelling<'a> {
         let tolerance = 3 * (sigma * sigma + ground.map_or(0, |g| g.variance)).isqrt() as i32;
         let same_surface = (tolerance * 3 / 2).max(Disparity::ONE.into());
         for (row, bins) in bins.as_chunks_mut().0.iter_mut().enumerate().take(cells.rows) {
-            let expected = ground.map(|ground| (ground, ground.parallax(cells.halves(row))));
-            Interval::new(expected, &config, tolerance, cells.farthest).store(bins);
+            Interval::new(ground, cells.halves(row), &config, tolerance).store(bins);
         }
         Self { cells, ground, config, tolerance, same_surface, intervals: bins }
     }
@@ -123,7 +66,7 @@ impl<'a> Labelling<'a> {
 
     /// Costs of the four labels at a cell: 0 where the answer agrees, rising to 16 at three deviations beyond
     /// the label's interval.
-    fn costs(&self, row: &Interval, parallax: Option<i32>, per_step: i32, most: i32) -> [u32; 4] {
+    fn costs(&self, row: &Between, parallax: Option<i32>, per_step: i32, most: i32) -> [u32; 4] {
         let Some(parallax) = parallax else { return UNANSWERED };
         let beyond = |by: i32| {
             let by = by.max(0).min(most);
@@ -151,6 +94,7 @@ impl<'a> Labelling<'a> {
         let most = self.tolerance.max(1);
         let per_step = (MOST << 16) / most;
         let intervals = self.intervals.as_chunks().0;
+        let beside = self.ground.map_or(0, |ground| ground.beside_256ths(self.cells.right_16ths(column)));
         let mut sums = [0_u32; 4];
         let mut below = None;
         let (mut answered, mut from) = (0, OBSTACLE);
@@ -161,7 +105,8 @@ impl<'a> Labelling<'a> {
                 parallax.zip(below).is_some_and(|(p, b): (i32, i32)| (p - b).abs() > self.same_surface);
             below = parallax.or(below);
             answered += usize::from(parallax.is_some());
-            let costs = self.costs(&Interval::load(bins), parallax, per_step, most);
+            let row = Interval::load(bins).at(beside, self.cells.farthest);
+            let costs = self.costs(&row, parallax, per_step, most);
             let change = sums.get(from).map_or(0, |sum| sum + CHANGE);
             *step = from as u8 | if breaks { BREAK } else { 0 };
             for (label, (sum, cost)) in sums.iter_mut().zip(costs).enumerate() {
@@ -174,7 +119,9 @@ impl<'a> Labelling<'a> {
             // The first of equals, as all are below the lowest row.
             from = cheapest(&sums);
         }
-        let found = self.segments(column, bound, labels, from);
+        let segment = self.segments(column, bound, labels, from);
+        let whole = self.whole(column, segment, labels);
+        let found = if self.touches(column, &whole) { whole } else { segment };
         let seen = match self.ground {
             Some(_) => self.seen(column, labels),
             // Without a ground a column is seen where enough of it has answers.
@@ -216,6 +163,49 @@ impl<'a> Labelling<'a> {
         best
     }
 
+    /// A segment with all cells of obstacles in its column that are of its surface: what is thinner than a
+    /// window shows in parts, with what is behind it between them.
+    fn whole(&self, column: usize, segment: Column, labels: &[u8]) -> Column {
+        let mut whole = segment;
+        if segment.kind != StixelKind::Obstacle {
+            return whole;
+        }
+        for (row, &label) in (0..).zip(labels.iter().take(self.cells.rows)) {
+            if usize::from(label) != OBSTACLE || (segment.top..=segment.base).contains(&row) {
+                continue;
+            }
+            let parallax = self.cells.parallax(column, row.into());
+            if parallax.is_some_and(|p| (p - segment.parallax).abs() <= self.same_surface) {
+                (whole.top, whole.base) = (whole.top.min(row), whole.base.max(row));
+                whole.cells += 1;
+            }
+        }
+        whole
+    }
+
+    /// Whether a segment reaches down to the ground: within two rows below its base, its parallax is the
+    /// ground's. What is far is near all of the ground that there is, and so is not asked.
+    fn touches(&self, column: usize, segment: &Column) -> bool {
+        let is_near = segment.parallax >= 2 * self.cells.farthest;
+        let is_asked = segment.kind == StixelKind::Obstacle && is_near;
+        let Some(ground) = self.ground.filter(|_| is_asked) else { return false };
+        let beside = ground.beside_256ths(self.cells.right_16ths(column));
+        let below = (usize::from(segment.base) + 2).min(self.cells.rows.saturating_sub(1));
+        let row = self.intervals.as_chunks().0.get(below).map(Interval::load);
+        row.is_some_and(|row| segment.parallax <= row.at(beside, self.cells.farthest).high)
+    }
+
+    /// Whether a segment stands on the ground and is two matching windows high.
+    pub(super) fn stands(&self, column: usize, segment: &Column) -> bool {
+        u32::from(segment.cells) * u32::from(self.config.cell_height) >= HIGH && self.touches(column, segment)
+    }
+
+    /// The first row in which the ground is seen before a speck that reaches down to it: the speck is neither
+    /// believed to be there nor not to be. 0 for any other.
+    pub(super) fn hidden(&self, column: usize, speck: &Column) -> u8 {
+        if self.touches(column, speck) { speck.base + 1 } else { 0 }
+    }
+
     /// Parallax and deviation of a segment: the mean of its cells, and the root of the answers' variance plus
     /// the cells'. A drop has the ground's parallax at its edge, whose place is known to a cell.
     fn measured(&self, column: usize, segment: Column, label: usize, sum: i32) -> Option<Column> {
@@ -225,7 +215,8 @@ impl<'a> Labelling<'a> {
         let own = u64::from(self.config.sigma_steps);
         if label == DROP {
             let ground = self.ground?;
-            let edge = ground.parallax(self.cells.halves(segment.base.into()));
+            let right = self.cells.right_16ths(column);
+            let edge = ground.parallax(self.cells.halves(segment.base.into()), right);
             // The edge is anywhere in its row of cells: a uniform distribution.
             let cell = ((ground.slope * self.cells.cell_height) >> 16) as u64;
             let sigma = (own * own + cell * cell / 12).isqrt().min(255) as u8;

@@ -1,6 +1,7 @@
 //! Connected surfaces: stixels side by side that have enough cells together.
 
-use super::stixel::{Column, Labelling, StixelKind};
+use super::column::{Column, StixelKind};
+use super::stixel::Labelling;
 
 /// How often a column whose nearest segment belongs to no surface looks for one behind it.
 const TRIES: usize = 3;
@@ -34,12 +35,13 @@ pub(super) fn stixels(labelling: &Labelling<'_>, columns: &mut [Column], labels:
         }
         for (x, column) in columns.iter_mut().enumerate() {
             if column.kind != StixelKind::Nothing && !column.is_supported() {
-                *column = labelling.column(x, column.parallax, labels);
+                let seen = column.seen.max(labelling.hidden(x, column));
+                *column = Column { seen, ..labelling.column(x, column.parallax, labels) };
             }
         }
     }
-    for column in columns.iter_mut().filter(|column| !column.is_supported()) {
-        *column = Column { seen: column.seen, ..Column::EMPTY };
+    for (x, column) in columns.iter_mut().enumerate().filter(|(_, column)| !column.is_supported()) {
+        *column = Column { seen: column.seen.max(labelling.hidden(x, column)), ..Column::EMPTY };
     }
 }
 
@@ -47,23 +49,26 @@ pub(super) fn stixels(labelling: &Labelling<'_>, columns: &mut [Column], labels:
 fn support(columns: &mut [Column], labelling: &Labelling<'_>, same_surface: i32) {
     let config = &labelling.config;
     let area = u32::from(config.cell_width) * u32::from(config.cell_height);
-    let mut rest = columns;
+    let (mut rest, mut place) = (columns, 0);
     while let Some(first) = rest.first() {
-        let (mut last, mut length, mut cells) = (*first, 1, u32::from(first.cells));
-        for next in rest.iter().skip(1) {
-            if !connected(&last, next, same_surface) {
+        let (mut last, mut length, mut cells, mut standing) = (*first, 0, 0, 0);
+        for (x, next) in (place..).zip(&*rest) {
+            if length > 0 && !connected(&last, next, same_surface) {
                 break;
             }
-            (last, length, cells) = (*next, length + 1, cells + u32::from(next.cells));
+            let own = u32::from(next.cells);
+            (last, length, cells) = (*next, length + 1, cells + own);
+            standing += if labelling.stands(x, next) { own } else { 0 };
         }
         let (run, after) = rest.split_at_mut_checked(length).unwrap_or_default();
         if run.is_empty() {
             return;
         }
         for column in run {
-            let enough = column.kind != StixelKind::Nothing && cells * area >= u32::from(config.min_pixels);
+            let enough = column.kind != StixelKind::Nothing
+                && (cells.max(2 * standing) * area >= u32::from(config.min_pixels));
             column.surface = if enough { cells.min(u16::MAX.into()) as u16 } else { 0 };
         }
-        rest = after;
+        (rest, place) = (after, place + length);
     }
 }

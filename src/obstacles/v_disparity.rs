@@ -34,6 +34,9 @@ pub(super) struct Cells<'a> {
     pub(super) columns: usize,
     pub(super) rows: usize,
     pub(super) cell_height: i64,
+    pub(super) cell_width: i64,
+    /// Column of the principal point, sixteenths of a px.
+    pub(super) cx_16ths: i64,
     /// `doffs` in steps.
     pub(super) offset: i32,
     /// Parallax of the farthest distance that counts, steps.
@@ -46,10 +49,22 @@ impl Cells<'_> {
         self.cell_height * (2 * row as i64 + 1) - 1
     }
 
+    /// How far the middle of a column of cells is to the right of the principal point, sixteenths of a px.
+    pub(super) fn right_16ths(&self, column: usize) -> i64 {
+        self.cell_width * (16 * column as i64 + 8) - 8 - self.cx_16ths
+    }
+
     /// Parallax of a cell, if it has an answer.
     pub(super) fn parallax(&self, column: usize, row: usize) -> Option<i32> {
         let d = self.cells.get(row * self.columns + column).filter(|d| d.is_some())?;
         Some(i32::from(d.raw()) + self.offset)
+    }
+
+    /// Half-rows and positions to the right of the outer columns in the middle and the lowest row.
+    pub(super) fn corners(&self) -> [(i64, i64); 4] {
+        let [upper, lower] = [self.rows / 2, self.rows.saturating_sub(1)].map(|row| self.halves(row));
+        let [left, right] = [0, self.columns.saturating_sub(1)].map(|x| self.right_16ths(x));
+        [(upper, left), (upper, right), (lower, left), (lower, right)]
     }
 
     /// Rows that a line has to reach over.
@@ -74,8 +89,8 @@ pub(super) fn count(bins: &mut [u8], cells: &[Disparity], shift: u32) {
     }
 }
 
-/// A line of the v-disparity that nothing is known of: parallax at row 0 and growth from row to row, steps in
-/// 65536ths.
+/// A line of the v-disparity that nothing is known of: parallax at row 0 in the column of the principal point
+/// and growth from row to row, steps in 65536ths. It leans as the carried ground does.
 #[derive(Clone, Copy)]
 struct Drawn {
     level: i64,
@@ -113,16 +128,19 @@ fn random(state: &mut u32) -> u32 {
     *state
 }
 
-/// The line through two cells, the lower one nearer.
-fn through(cells: &Cells<'_>, drawn: [usize; 2]) -> Option<Drawn> {
+/// The line through two cells, the lower one nearer, of a ground that leans as another one.
+fn through(cells: &Cells<'_>, drawn: [usize; 2], leaning: Option<&Ground>) -> Option<Drawn> {
     let [a, b] = drawn.map(|place| (place.checked_div(cells.columns), place.checked_rem(cells.columns)));
     let (a, b) = (a.0.zip(a.1)?, b.0.zip(b.1)?);
     let (upper, lower) = if a.0 < b.0 { (a, b) } else { (b, a) };
     if lower.0 - upper.0 < cells.span() {
         return None;
     }
-    let [far, near] = [upper, lower].map(|(row, column)| cells.parallax(column, row).map(i64::from));
-    let (far, near) = (far?, near?);
+    let upright = |(row, column)| {
+        let beside = leaning.map_or(0, |ground| ground.beside_256ths(cells.right_16ths(column)) >> 8);
+        cells.parallax(column, row).map(|parallax| i64::from(parallax - beside))
+    };
+    let (far, near) = (upright(upper)?, upright(lower)?);
     // Before all divisions.
     if near <= far {
         return None;
@@ -136,79 +154,101 @@ fn through(cells: &Cells<'_>, drawn: [usize; 2]) -> Option<Drawn> {
     Some(Drawn { level, slope })
 }
 
-/// Sums of a least-squares line over the cells of a band around another line.
+/// Sums over the cells within a band around a plane, of half-rows `a`, columns `x`, and parallaxes `p` less
+/// the plane's.
 #[derive(Default)]
 struct Sums {
     n: i64,
     a: i64,
-    b: i64,
+    x: i64,
+    p: i64,
     aa: i64,
-    ab: i64,
-    /// Squared distances from the line in the middle of the band.
-    squares: i64,
+    ax: i64,
+    ap: i64,
+    xx: i64,
+    xp: i64,
+    pp: i64,
     first_row: Option<usize>,
     last_row: usize,
 }
 
-/// Adds the cells within `band` of a line whose neighbours above and below are, too: at the edge of the
-/// ground and of the picture a matching window sees more of the one side. `a` is the half-row less
-/// `origin[0]`, `b` the parallax less `origin[1]`.
-fn sums(cells: &Cells<'_>, line: &Ground, band: i32, origin: [i64; 2]) -> Sums {
+/// Adds the cells within `band` of a plane whose neighbours above and below are, too: at the edge of the
+/// ground and of the picture a matching window sees more of the one side.
+fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
     let mut sums = Sums::default();
     for row in 1..cells.rows.saturating_sub(1) {
         let around = [row - 1, row, row + 1];
         let [above, here, below] = around.map(|row| {
             let disparities = cells.cells.get(row * cells.columns..(row + 1) * cells.columns);
-            (disparities.unwrap_or_default(), line.parallax(cells.halves(row)))
+            (disparities.unwrap_or_default(), plane.parallax_256ths(cells.halves(row)))
         });
-        if here.1 < cells.farthest {
+        if here.1 >> 8 < cells.farthest {
             continue;
         }
-        let a = cells.halves(row) - origin[0];
         let off = |d: Disparity, expected: i32| {
-            let off = i32::from(d.raw()) + cells.offset - expected;
+            let off = i32::from(d.raw()) + cells.offset - (expected >> 8);
             (d.is_some() && off.abs() <= band).then_some(off)
         };
-        let (mut n, mut sum, mut squares) = (0_i32, 0_i32, 0_i32);
-        for ((&d, &d_above), &d_below) in here.0.iter().zip(above.0).zip(below.0) {
-            let Some(off_here) = off(d, here.1) else { continue };
-            if off(d_above, above.1).is_none() || off(d_below, below.1).is_none() {
+        let (mut n, mut p, mut x, mut pp, mut xp, mut xx) = (0_i32, 0_i32, 0_i32, 0_i32, 0_i64, 0_i32);
+        for (column, ((&d, &d_above), &d_below)) in (0..).zip(here.0.iter().zip(above.0).zip(below.0)) {
+            let beside = plane.beside_256ths(cells.right_16ths(column as usize));
+            let Some(off_here) = off(d, here.1 + beside) else { continue };
+            if off(d_above, above.1 + beside).is_none() || off(d_below, below.1 + beside).is_none() {
                 continue;
             }
-            (n, sum, squares) = (n + 1, sum + off_here, squares + off_here * off_here);
+            (n, p, pp) = (n + 1, p + off_here, pp + off_here * off_here);
+            (x, xx) = (x + column, xx + column * column);
+            xp += i64::from(off_here * column);
         }
         if n == 0 {
             continue;
         }
         // All of a row have the same `a`.
-        let n = i64::from(n);
-        let b = i64::from(sum) + n * (i64::from(here.1) - origin[1]);
-        sums.n += n;
-        sums.a += a * n;
-        sums.b += b;
-        sums.aa += a * a * n;
-        sums.ab += a * b;
-        sums.squares += i64::from(squares);
+        let ([n, x, p], a) = ([n, x, p].map(i64::from), cells.halves(row));
+        (sums.n, sums.a, sums.x, sums.p) = (sums.n + n, sums.a + a * n, sums.x + x, sums.p + p);
+        (sums.aa, sums.ax, sums.ap) = (sums.aa + a * a * n, sums.ax + a * x, sums.ap + a * p);
+        (sums.xx, sums.xp, sums.pp) = (sums.xx + i64::from(xx), sums.xp + xp, sums.pp + i64::from(pp));
         sums.first_row.get_or_insert(row);
         sums.last_row = row;
     }
     sums
 }
 
-/// Least squares over the cells within `band` of a line, of which there have to be `fewest`.
-fn refined(cells: &Cells<'_>, line: &Ground, band: i32, fewest: i64, rig: &RigNumbers) -> Option<Ground> {
-    let middle = cells.halves(cells.rows / 2);
-    let origin = [middle, i64::from(line.parallax(middle))];
-    let s = sums(cells, line, band, origin);
+/// Least squares over the cells within `band` of a plane, of which there have to be `fewest`. The roll stays
+/// where they reach over too little of the picture's width.
+fn refined(
+    cells: &Cells<'_>,
+    plane: &Ground,
+    band: i32,
+    fewest: i64,
+    source: &GroundSource,
+    rig: &RigNumbers,
+) -> Option<Ground> {
+    let s = sums(cells, plane, band);
     if s.n < fewest {
         return None;
     }
-    let along = s.ab - (s.a * s.b).checked_div(s.n)?;
-    let spread = s.aa - (s.a * s.a).checked_div(s.n)?;
-    let slope = (along << 17).checked_div(spread)?;
-    let level = (origin[1] << 16) + (s.b << 16).checked_div(s.n)?
-        - slope.wrapping_mul(middle * s.n + s.a).checked_div(2 * s.n)?;
-    Ground::from_line(level, slope, 1, rig)
+    // Sums about the means: of products of `u` and `v`, and of each.
+    let about = |uv: i64, u: i64, v: i64| Some(uv - (u * v).checked_div(s.n)?);
+    let (aa, ax, ap) = (about(s.aa, s.a, s.a)?, about(s.ax, s.a, s.x)?, about(s.ap, s.a, s.p)?);
+    let (xx, xp) = (about(s.xx, s.x, s.x)?, about(s.xp, s.x, s.p)?);
+    // Columns and parallaxes less what goes with the row.
+    let with_row = (ax << 16).checked_div(aa)?;
+    let (spread, along) = (xx - ((ax * with_row) >> 16), xp - ((ap * with_row) >> 16));
+    // A deviation of an eighth of the columns is that of a run of three sevenths of them.
+    let columns = cells.columns as i64;
+    let rolls = matches!(source, GroundSource::Searched { most_roll: 1.., .. });
+    let per_cell = match rolls && 64 * spread >= s.n * columns * columns {
+        true => (along << 16).checked_div(spread)?,
+        false => 0,
+    };
+    let per_half = ((ap << 16) - per_cell * ax).checked_div(aa)?;
+    let lean = per_cell.checked_div(cells.cell_width)?;
+    let right = (16 * cells.cell_width * s.x).checked_div(s.n)? + cells.right_16ths(0);
+    // Parallaxes of the plane were rounded down.
+    let mean = (s.p << 16).checked_div(s.n)? - 0x8000;
+    let level = mean - (per_half * s.a).checked_div(s.n)? - ((lean * right) >> 4);
+    Ground::from_line(plane.level + level, plane.slope + 2 * per_half, i64::from(plane.lean) + lean, 1, rig)
 }
 
 /// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted by
@@ -229,31 +269,32 @@ pub(super) fn fit(
     let all = cells.columns * cells.rows;
     let bins = bins.get(..cells.rows * BINS)?;
     let drawn = |line: Ground| Drawn { level: line.level, slope: line.slope };
+    let lean = carried.map_or(0, |ground| i64::from(ground.lean));
     let mut best = carried.map(|line| (score(cells, bins, shift, drawn(line)), line));
     let mut state = 0x9e37_79b9;
     for _ in 0..DRAWS {
         let pair = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
-        let Some(line) = through(cells, pair) else { continue };
+        let Some(line) = through(cells, pair, carried.as_ref()) else { continue };
         let score = score(cells, bins, shift, line);
         if best.is_none_or(|(most, _)| score > most) {
             // The plane behind a line takes divisions: of the few that are better alone.
-            let plane = Ground::from_line(line.level, line.slope, 1, rig);
+            let plane = Ground::from_line(line.level, line.slope, lean, 1, rig);
             best = plane.filter(|plane| plane.is_within(source)).map(|plane| (score, plane)).or(best);
         }
     }
-    let (_, mut line) = best?;
+    let (_, mut plane) = best?;
     let answered = cells.cells.iter().take(all).filter(|d| d.is_some()).count() as i64;
     let fewest = (answered / 16).max(8);
     let mut within = None;
     for band in bands(shift) {
-        let Some(fitted) = refined(cells, &line, band, fewest, rig) else { break };
-        (line, within) = (fitted, Some(band));
+        let Some(fitted) = refined(cells, &plane, band, fewest, source, rig) else { break };
+        (plane, within) = (fitted, Some(band));
     }
-    let s = sums(cells, &line, within.filter(|&band| band <= WIDEST)?, [0; 2]);
+    let s = sums(cells, &plane, within.filter(|&band| band <= WIDEST)?);
     let reach = s.last_row - s.first_row?;
-    if s.n < fewest || reach < cells.span() || !line.is_within(source) {
+    if s.n < fewest || reach < cells.span() || !plane.is_within(source) {
         return None;
     }
-    let variance = 1 + (4 * s.squares).checked_div(s.n * s.n)?;
-    Some(Ground { variance: variance.min(1 << 20) as u32, ..line })
+    let variance = 1 + (4 * s.pp).checked_div(s.n * s.n)?;
+    Some(Ground { variance: variance.min(1 << 20) as u32, ..plane })
 }

@@ -38,6 +38,8 @@ pub struct GroundRecord {
     pub height_m: f32,
     /// Downward pitch of the camera, degrees.
     pub pitch_deg: f32,
+    /// Roll of the camera, degrees: positive where its right side is the lower one.
+    pub roll_deg: f32,
     /// Deviation of its disparities, px.
     pub sigma_px: f32,
 }
@@ -132,6 +134,7 @@ impl ObstacleRecord {
         let ground = frame.ground().map(|ground| GroundRecord {
             height_m: metres(ground.height_mm),
             pitch_deg: ground.pitch_rad().to_degrees(),
+            roll_deg: ground.roll_rad().to_degrees(),
             sigma_px: (ground.variance as f32).sqrt() / f32::from(Disparity::ONE),
         });
         let stixels = (0..frame.columns()).filter_map(|x| {

@@ -98,7 +98,7 @@ static void finders(void) {
     EXPECT(stereopsis_obstacles_begin_frame(h), NOT_STARTED);
     EXPECT(stereopsis_obstacles_push(h, &row), NOT_STARTED);
     EXPECT(stereopsis_obstacles_finish(h, &blind), NOT_STARTED);
-    EXPECT(stereopsis_obstacles_set_pose(h, 0, 300), NOT_STARTED);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 0, 300), NOT_STARTED);
     EXPECT(stereopsis_obstacles_ground(h, &ground), NOT_STARTED);
     EXPECT(stereopsis_obstacles_scan(h, ranges, SECTORS, &scan), NOT_STARTED);
     starts(h);
@@ -179,10 +179,11 @@ static void finders(void) {
     CHECK(frame(h, HEIGHT - 24) == STEREOPSIS_BLIND_ROWS_LOST);
     EXPECT(stereopsis_obstacles_sectors(h, sectors, SECTORS), OK);
     for (int i = 0; i < SECTORS; i++) CHECK(sectors[i].state == STEREOPSIS_SECTOR_BLIND);
-    EXPECT(stereopsis_obstacles_set_pose(NULL, 0, 300), NULL);
-    EXPECT(stereopsis_obstacles_set_pose(h, 501, 300), OBSTACLE_POSE);
-    EXPECT(stereopsis_obstacles_set_pose(h, 0, 0), OBSTACLE_POSE);
-    EXPECT(stereopsis_obstacles_set_pose(h, 0, 300), OK);
+    EXPECT(stereopsis_obstacles_set_pose(NULL, 0, 0, 300), NULL);
+    EXPECT(stereopsis_obstacles_set_pose(h, 501, 0, 300), OBSTACLE_POSE);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, -501, 300), OBSTACLE_POSE);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 0, 0), OBSTACLE_POSE);
+    EXPECT(stereopsis_obstacles_set_pose(h, 0, 0, 300), OK);
     CHECK(frame(h, HEIGHT) == STEREOPSIS_BLIND_NOT);
     EXPECT(stereopsis_obstacles_ground(h, &ground), OK);
     CHECK(ground.is_known == 1 && ground.height_mm == 300);

@@ -144,9 +144,9 @@ fn frames_are_equal(config: ObstacleConfig, change: impl Fn(&mut CObstacleConfig
             twin.as_mut_view().cameras(&twin_monitor);
         }
         if number == 8 && config.ground != ObstacleConfig::default().ground {
-            twin.as_mut_view().set_pose(120, 310).expect("a pose");
+            twin.as_mut_view().set_pose(120, 30, 310).expect("a pose");
             // SAFETY: as above.
-            assert_eq!(unsafe { stereopsis_obstacles_set_pose(handle, 120, 310) }, Status::Ok);
+            assert_eq!(unsafe { stereopsis_obstacles_set_pose(handle, 120, 30, 310) }, Status::Ok);
         }
         let all = disparities.chunks_mut(96).zip(flags.chunks_mut(96)).enumerate();
         for (y, (disparities, flags)) in all.filter(|(y, _)| !lost.contains(y)) {
@@ -190,8 +190,11 @@ fn frames_are_equal(config: ObstacleConfig, change: impl Fn(&mut CObstacleConfig
             ok(stereopsis_drive_decide(drive, handle, SPEED, verdict.as_mut_ptr()));
             (ground.assume_init(), scan.assume_init(), verdict.assume_init())
         };
-        let known = view.ground().map(|g| (g.level, g.slope, g.variance, g.height_mm, g.pitch_rad()));
-        let of_c = (ground.level, ground.slope, ground.variance, ground.height_mm, ground.pitch_rad);
+        let known = view
+            .ground()
+            .map(|g| (g.level, g.slope, g.lean, g.variance, g.height_mm, (g.pitch_rad(), g.roll_rad())));
+        let angles = (ground.pitch_rad, ground.roll_rad);
+        let of_c = (ground.level, ground.slope, ground.lean, ground.variance, ground.height_mm, angles);
         assert_eq!((ground.is_known == 1).then_some(of_c), known, "frame {number}");
         for (column, stixel) in stixels.iter().enumerate() {
             // SAFETY: as above.
@@ -246,10 +249,11 @@ fn frames_are_those_of_the_finder() {
     for decision in [STEREOPSIS_DECISION_BLIND, STEREOPSIS_DECISION_SLOW, STEREOPSIS_DECISION_STOP] {
         assert!(searched.contains(&decision), "{searched:?}");
     }
-    let ground = GroundSource::Given { pitch_mrad: 160, height_mm: 300 };
+    let ground = GroundSource::Given { pitch_mrad: 160, roll_mrad: -20, height_mm: 300 };
     let given = ObstacleConfig { ground, sectors: 16, min_confidence: 40, ..ObstacleConfig::default() };
     frames_are_equal(given, |c| {
         (c.ground, c.pitch_mrad, c.height_mm, c.min_confidence) = (STEREOPSIS_GROUND_GIVEN, 160, 300, 40);
+        c.roll_mrad = -20;
     });
     let flying = ObstacleConfig { ground: GroundSource::Absent, ..ObstacleConfig::default() };
     let absent = frames_are_equal(flying, |c| c.ground = STEREOPSIS_GROUND_ABSENT);

@@ -35,6 +35,7 @@ fn the_ground_has_the_height_and_pitch_of_the_camera() {
         // The same plane by the pose gives the same line, to a tenth of a px at the lowest row.
         let given = GroundSource::Given {
             pitch_mrad: (1000.0 * pitch).round() as i16,
+            roll_mrad: 0,
             height_mm: (1000.0 * height_m).round() as u16,
         };
         let mut finder = map.finder(&ObstacleConfig { ground: given, ..ObstacleConfig::default() });
@@ -45,6 +46,41 @@ fn the_ground_has_the_height_and_pitch_of_the_camera() {
         assert!((lowest(&ground) - lowest(&by_pose)).abs() < 3.2, "{ground:?} {by_pose:?}");
         assert_eq!(f64::from(by_pose.height_mm), (1000.0 * height_m).round());
         assert!((f64::from(by_pose.pitch_rad()) - pitch).abs() < 1e-3, "{by_pose:?}");
+    }
+}
+
+#[test]
+fn the_ground_leans_with_the_camera() {
+    let (rig, pitch, height_m) = (rig(), 0.15_f64, 0.3);
+    for roll in [-0.05_f64, 0.02, 0.05] {
+        // What is seen at a column and a row of a camera that is rolled.
+        let seen = |u: f64, v: f64| {
+            let (x, y) = (u - 79.5, v - 59.5);
+            let down = pitch.cos() * (x * roll.sin() + y * roll.cos()) + 130.0 * pitch.sin();
+            Some(0.1 / height_m * down).filter(|parallax| *parallax > 0.0)
+        };
+        let map = Map::of(rig, [160, 120], seen);
+        let given = GroundSource::Given {
+            pitch_mrad: (1000.0 * pitch).round() as i16,
+            roll_mrad: (1000.0 * roll).round() as i16,
+            height_mm: 300,
+        };
+        for source in [ObstacleConfig::default().ground, given] {
+            let mut finder = map.finder(&ObstacleConfig { ground: source, ..ObstacleConfig::default() });
+            map.rows(&mut finder, |_| true);
+            assert_eq!(finder.finish(), Ok(()));
+            let view = finder.as_mut_view();
+            let ground = view.ground().expect("a ground");
+            let off = [f64::from(ground.roll_rad()) - roll, f64::from(ground.pitch_rad()) - pitch];
+            assert!(off.iter().all(|off| off.abs() < 2e-3), "{roll} rad, {source:?}: {ground:?}");
+            assert!((297..=303).contains(&ground.height_mm), "{roll} rad, {source:?}: {ground:?}");
+            // Nothing stands on it, and each column sees it from the lower edge on.
+            for x in 0..view.columns() {
+                let stixel = view.stixel(x);
+                assert_eq!(stixel.kind, StixelKind::Nothing, "{roll} rad, {source:?}, column {x}");
+                assert!(stixel.seen_row < 60, "{roll} rad, {source:?}, column {x}: {stixel:?}");
+            }
+        }
     }
 }
 
@@ -216,7 +252,7 @@ fn wrong_configurations_and_sizes_are_named() {
     assert_eq!(refused(&|c| (c.cell_width, c.cell_height) = (16, 16), [40, 40]), Some(ObstacleError::Cells));
     assert_eq!(refused(&|c| c.sectors = 33, [40, 40]), Some(ObstacleError::Sectors));
     assert_eq!(refused(&|c| c.sigma_steps = 0, [40, 40]), Some(ObstacleError::Limits));
-    let flat = GroundSource::Given { pitch_mrad: 501, height_mm: 300 };
+    let flat = GroundSource::Given { pitch_mrad: 501, roll_mrad: 0, height_mm: 300 };
     assert_eq!(refused(&|c| c.ground = flat, [40, 40]), Some(ObstacleError::Pose));
     assert!(small.finish().is_err(), "a refused start leaves nothing to finish");
     // Rows out of place, too short, and before a start are ignored.

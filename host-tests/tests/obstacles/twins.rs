@@ -13,6 +13,7 @@ use stereopsis_host::twin::obstacles::{Found, Kind, Line, Scene, Sector, find, s
 fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
     let height_m = 0.15 + random.unit();
     let pitch = 0.4 * random.unit() - 0.05;
+    let rolled = *random.pick(&[0.0, 0.0, 0.03, -0.08]);
     let (f, b) = (f64::from(rig.focal_px()), f64::from(rig.baseline_m()));
     let [noise_px, holes, specks] =
         [*random.pick(&[0.0, 0.1, 0.5]), 0.5 * random.unit(), *random.pick(&[0.0, 0.01, 0.1])];
@@ -32,8 +33,9 @@ fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
         let standing =
             bodies.iter().filter(|(x, y, _)| (x[0]..x[1]).contains(&u) && (y[0]..y[1]).contains(&v));
         let nearest = standing.map(|(.., parallax)| *parallax).fold(0.0, f64::max);
-        let seen = floor(&rig, height_m * lower, pitch, v).unwrap_or(0.0).max(nearest);
-        Some(seen)
+        let beside = rolled * b / height_m * (u - f64::from(rig.principal_point().0));
+        let seen = floor(&rig, height_m * lower, pitch, v).unwrap_or(0.0) + beside;
+        Some(seen.max(nearest))
     });
     let width = usize::from(size[0]);
     let damaged: Vec<_> = (0..size[1]).map(|_| noise.unit() < 0.03).collect();
@@ -135,8 +137,8 @@ fn compare(
     }
     let line = view
         .ground()
-        .map(|g| (i128::from(g.level), i128::from(g.slope), i128::from(g.variance), i128::from(g.height_mm)));
-    prop_assert_eq!(line, found.ground.map(|g| (g.level, g.slope, g.variance, g.height_mm)));
+        .map(|g| ([g.level, g.slope, g.lean.into()].map(i128::from), g.variance.into(), g.height_mm.into()));
+    prop_assert_eq!(line, found.ground.map(|g| ([g.level, g.slope, g.lean], g.variance, g.height_mm)));
     let (cell, offset) = (usize::from(config.cell_height), map.rig.disparity_offset_px() * 32.0);
     for (x, standing) in found.columns.iter().enumerate() {
         let stixel = view.stixel(x);
@@ -232,7 +234,7 @@ fn the_maps_show_what_is_to_be_found() {
     let rig = super::support::rig();
     let mut random = Random::new(5);
     let (mut grounds, mut standing, mut drops) = (0, 0, 0);
-    for _ in 0..40 {
+    for _ in 0..60 {
         let map = map(&mut random, rig, [160, 120]);
         let found = twin(&map, ObstacleConfig::default(), &mut (None, 0));
         grounds += usize::from(found.ground.is_some());

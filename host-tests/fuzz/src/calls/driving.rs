@@ -24,6 +24,7 @@ fn config(u: &mut Unstructured<'_>, a: &mut Arena) -> Result<*mut CObstacleConfi
     if u.arbitrary()? {
         config.ground = u.int_in_range(0..=3)?;
         (config.height_mm, config.pitch_mrad) = (u.arbitrary()?, u.int_in_range(-510..=510)?);
+        (config.roll_mrad, config.most_roll) = (u.int_in_range(-510..=510)?, u.arbitrary()?);
         (config.cell_width, config.cell_height) = (u.int_in_range(1..=17)?, u.int_in_range(1..=17)?);
         (config.sigma_steps, config.min_pixels) = (u.int_in_range(0..=330)?, u.arbitrary()?);
         (config.obstacle_mm, config.drop_mm, config.headroom_mm) =
@@ -70,7 +71,10 @@ pub fn obstacles(u: &mut Unstructured<'_>, a: &mut Arena) -> Result<Status> {
                 stereopsis_obstacles_start(h, config, rig, width, height, u.arbitrary()?)
             }
             4 | 5 => stereopsis_obstacles_begin_frame(h),
-            6 => stereopsis_obstacles_set_pose(h, u.int_in_range(-510..=510)?, u.arbitrary()?),
+            6 => {
+                let [pitch, roll] = [u.int_in_range(-510..=510)?, u.int_in_range(-510..=510)?];
+                stereopsis_obstacles_set_pose(h, pitch, roll, u.arbitrary()?)
+            }
             7 => stereopsis_obstacles_deinit(h),
             8 => stereopsis_obstacles_ground(h, a.array(u, 1)?),
             9 => stereopsis_obstacles_stixels(h, a.array(u, n)?, n),

@@ -39,9 +39,13 @@ pub struct ObstacleArgs {
         allow_negative_numbers = true)]
     pub camera_height: Option<u16>,
     /// Pitch of the cameras, degrees downward
-    #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_height"], value_parser = pitch,
+    #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_height"], value_parser = angle,
         allow_negative_numbers = true)]
     pub camera_pitch: Option<i16>,
+    /// Roll of the cameras, degrees by which their right side is lower: 0 where none is given
+    #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_height"], value_parser = angle,
+        allow_negative_numbers = true)]
+    pub camera_roll: Option<i16>,
 }
 
 fn speed(text: &str) -> Result<u16, &'static str> {
@@ -52,10 +56,10 @@ fn long(text: &str) -> Result<u16, &'static str> {
     thousandths(text, 0.01, 65.0).ok_or("a length from 0.01 to 65 is needed")
 }
 
-fn pitch(text: &str) -> Result<i16, &'static str> {
+fn angle(text: &str) -> Result<i16, &'static str> {
     let degrees = text.parse::<f64>().ok().filter(|degrees| (-28.0..=28.0).contains(degrees));
-    let pitch = degrees.map(|degrees| (1000.0 * degrees.to_radians()).round() as i16);
-    pitch.ok_or("an angle from -28 to 28 is needed")
+    let angle = degrees.map(|degrees| (1000.0 * degrees.to_radians()).round() as i16);
+    angle.ok_or("an angle from -28 to 28 is needed")
 }
 
 fn thousandths(text: &str, least: f64, most: f64) -> Option<u16> {
@@ -79,7 +83,9 @@ impl ObstacleArgs {
         let drive =
             DriveConfig { corridor_mm: self.corridor.unwrap_or(default.drive.corridor_mm), ..default.drive };
         let given = self.camera_height.zip(self.camera_pitch);
-        let ground = given.map(|(height_mm, pitch_mrad)| GroundSource::Given { pitch_mrad, height_mm });
+        let roll_mrad = self.camera_roll.unwrap_or(0);
+        let ground =
+            given.map(|(height_mm, pitch_mrad)| GroundSource::Given { pitch_mrad, roll_mrad, height_mm });
         let vehicle = Vehicle {
             drive,
             speed_mm_s: self.speed.unwrap_or(default.speed_mm_s),

@@ -1,15 +1,17 @@
-//! The ground's line by counting cells, and by least squares.
+//! The ground's plane by counting cells, and by least squares.
 
 use super::Scene;
 use stereopsis::obstacles::GroundSource;
 
-/// A line of parallaxes over rows.
+/// A plane of parallaxes: a line over rows that leans with the columns.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Line {
-    /// Parallax at row 0, steps in 65536ths.
+    /// Parallax at row 0 in the column of the principal point, steps in 65536ths.
     pub level: i128,
     /// Growth from row to row, steps in 65536ths.
     pub slope: i128,
+    /// Growth from column to column, steps in 65536ths.
+    pub lean: i128,
     /// Variance of the parallax, squared steps.
     pub variance: i128,
     /// Height of the camera above the plane, mm.
@@ -17,31 +19,40 @@ pub struct Line {
 }
 
 impl Line {
-    /// Parallax at a half-row.
-    pub fn at(&self, halves: i128) -> i128 {
-        (self.level + self.slope * halves / 2) >> 16
+    /// Parallax at a half-row, so far to the right of the principal point, sixteenths of a px.
+    pub fn at(&self, halves: i128, right: i128) -> i128 {
+        let in_256ths = ((self.level + self.slope * halves / 2) >> 8) + ((self.lean * right) >> 12);
+        in_256ths >> 8
     }
 
-    /// A line of a plane that a search allows.
-    fn new(scene: &Scene<'_>, level: i128, slope: i128, variance: i128) -> Option<Self> {
+    /// Parallax in the column of the principal point.
+    pub fn upright(&self, halves: i128) -> i128 {
+        self.at(halves, 0)
+    }
+
+    /// A plane that a camera can see.
+    fn new(scene: &Scene<'_>, [level, slope, lean]: [i128; 3], variance: i128) -> Option<Self> {
         let inclination = (level + slope * scene.cy_halves / 2) * 16 / scene.focal_16ths;
-        if !(1..1 << 30).contains(&slope) || inclination.abs() >= 1 << 30 {
+        if !(1..1 << 30).contains(&slope) || inclination.abs() >= 1 << 30 || lean.abs() > slope {
             return None;
         }
-        let norm = ((slope * slope + inclination * inclination) as u128).isqrt() as i128;
+        let norm = ((slope * slope + lean * lean + inclination * inclination) as u128).isqrt() as i128;
         let height_mm = scene.baseline_16ths * 131_072 / norm;
-        (height_mm <= 65_535).then_some(Self { level, slope, variance, height_mm })
+        (height_mm <= 65_535).then_some(Self { level, slope, lean, variance, height_mm })
     }
 
     fn is_allowed(&self, scene: &Scene<'_>) -> bool {
-        let GroundSource::Searched { least_height_mm, most_height_mm, most_pitch } = scene.config.ground
+        let GroundSource::Searched { least_height_mm, most_height_mm, most_pitch, most_roll } =
+            scene.config.ground
         else {
             return true;
         };
         let inclination = (self.level + self.slope * scene.cy_halves / 2) * 16 / scene.focal_16ths;
-        let tangent = inclination * 65_536 / self.slope;
+        let down = ((self.slope * self.slope + self.lean * self.lean) as u128).isqrt() as i128;
+        let tangent = inclination * 65_536 / down;
         (i128::from(least_height_mm)..=i128::from(most_height_mm)).contains(&self.height_mm)
             && tangent.abs() * 1000 <= i128::from(most_pitch) * 65_536
+            && self.lean.abs() * 1000 <= i128::from(most_roll) * self.slope
     }
 }
 
@@ -61,7 +72,7 @@ fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     let width = bin(scene);
     let mut score = 0;
     for row in 0..rows {
-        let parallax = line.at(scene.halves(row));
+        let parallax = line.upright(scene.halves(row));
         let steps = parallax - scene.offset;
         if parallax < scene.farthest() || steps < 0 {
             continue;
@@ -77,60 +88,90 @@ fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     score
 }
 
-/// Cells within `band` of a line, as are those above and below, as half-rows and parallaxes.
-fn near(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> Vec<(i128, i128)> {
+/// A cell near a plane: its row, column and what its parallax has more than the plane.
+struct Near {
+    row: usize,
+    column: usize,
+    off: i128,
+}
+
+/// Cells within `band` of a plane, as are those above and below.
+fn near(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> Vec<Near> {
     let [columns, rows] = scene.size();
     let mut found = Vec::new();
-    let parallax = |row: usize, column: usize| cells[row * columns + column].map(|d| d + scene.offset);
-    let fits = |row: usize, column: usize| {
-        let expected = line.at(scene.halves(row));
-        parallax(row, column).is_some_and(|parallax| (parallax - expected).abs() <= band)
+    let off = |row: usize, column: usize| {
+        let expected = line.at(scene.halves(row), scene.right(column));
+        let off = cells[row * columns + column]? + scene.offset - expected;
+        (off.abs() <= band).then_some(off)
     };
-    for row in (1..rows.max(1) - 1).filter(|&row| line.at(scene.halves(row)) >= scene.farthest()) {
+    for row in (1..rows.max(1) - 1).filter(|&row| line.upright(scene.halves(row)) >= scene.farthest()) {
         for column in 0..columns {
-            if (row - 1..=row + 1).all(|row| fits(row, column)) {
-                found.extend(parallax(row, column).map(|p| (scene.halves(row), p)));
+            if (row - 1..=row + 1).all(|row| off(row, column).is_some()) {
+                found.extend(off(row, column).map(|off| Near { row, column, off }));
             }
         }
     }
     found
 }
 
-/// Least squares, about the middle row and the line's parallax there.
+/// Least squares of what the cells near a plane have more than it: first columns and parallaxes less what
+/// goes with the row, then the row's part.
 fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128, fewest: i128) -> Option<Line> {
-    let middle = scene.halves(scene.size()[1] / 2);
-    let there = line.at(middle);
     let near = near(scene, cells, line, band);
-    let points: Vec<_> = near.iter().map(|(halves, p)| (halves - middle, p - there)).collect();
-    let n = points.len() as i128;
+    let n = near.len() as i128;
     if n < fewest {
         return None;
     }
-    let sum = |of: fn(&(i128, i128)) -> i128| points.iter().map(of).sum::<i128>();
-    let (a, b) = (sum(|p| p.0), sum(|p| p.1));
-    let spread = sum(|p| p.0 * p.0) - a * a / n;
-    if spread == 0 {
+    let row = |cell: &Near| scene.halves(cell.row);
+    let column = |cell: &Near| cell.column as i128;
+    let sum = |of: &dyn Fn(&Near) -> i128| near.iter().map(of).sum::<i128>();
+    let (a, x, p) = (sum(&row), sum(&column), sum(&|cell| cell.off));
+    let aa = sum(&|cell| row(cell) * row(cell)) - a * a / n;
+    let ax = sum(&|cell| row(cell) * column(cell)) - a * x / n;
+    let ap = sum(&|cell| row(cell) * cell.off) - a * p / n;
+    let xx = sum(&|cell| column(cell) * column(cell)) - x * x / n;
+    let xp = sum(&|cell| column(cell) * cell.off) - x * p / n;
+    if aa == 0 {
         return None;
     }
-    let slope = (sum(|p| p.0 * p.1) - a * b / n) * 131_072 / spread;
-    let level = there * 65_536 + b * 65_536 / n - slope * (middle * n + a) / (2 * n);
-    Line::new(scene, level, slope, 1)
+    let with_row = ax * 65_536 / aa;
+    let (spread, along) = (xx - ((ax * with_row) >> 16), xp - ((ap * with_row) >> 16));
+    let columns = scene.size()[0] as i128;
+    let rolls = matches!(scene.config.ground, GroundSource::Searched { most_roll: 1.., .. });
+    let per_cell = if rolls && 64 * spread >= n * columns * columns { along * 65_536 / spread } else { 0 };
+    let per_half = (ap * 65_536 - per_cell * ax) / aa;
+    let width = i128::from(scene.config.cell_width);
+    let lean = per_cell / width;
+    let right = 16 * width * x / n + scene.right(0);
+    // The plane's parallaxes were rounded down.
+    let level = p * 65_536 / n - 32_768 - per_half * a / n - ((lean * right) >> 4);
+    Line::new(scene, [line.level + level, line.slope + 2 * per_half, line.lean + lean], 1)
 }
 
-/// The line through two cells at least an eighth of the rows, and two, apart.
-fn through(scene: &Scene<'_>, cells: &[Option<i128>], drawn: [usize; 2]) -> Option<Line> {
+/// The line through two cells at least an eighth of the rows, and two, apart, which leans as a carried one.
+fn through(
+    scene: &Scene<'_>,
+    cells: &[Option<i128>],
+    drawn: [usize; 2],
+    carried: Option<Line>,
+) -> Option<Line> {
     let [columns, rows] = scene.size();
-    let mut ends: Vec<_> = drawn.iter().map(|&i| (i / columns, cells[i])).collect();
+    let lean = carried.map_or(0, |line| line.lean);
+    let upright = |i: usize| {
+        let beside = ((lean * scene.right(i % columns)) >> 12) >> 8;
+        cells[i].map(|d| d + scene.offset - beside)
+    };
+    let mut ends: Vec<_> = drawn.iter().map(|&i| (i / columns, upright(i))).collect();
     // The first drawn is the lower one of two in a row, which is refused.
     ends.sort_by_key(|end| end.0);
     let ((upper, far), (lower, near)) = (ends[0], ends[1]);
     if lower - upper < (rows / 8).max(2) {
         return None;
     }
-    let (far, near) = (far? + scene.offset, near? + scene.offset);
+    let (far, near) = (far?, near?);
     let apart = i128::from(scene.config.cell_height) * (lower - upper) as i128;
     let slope = (near - far) * 65_536 / apart;
-    Line::new(scene, far * 65_536 - slope * scene.halves(upper) / 2, slope, 1)
+    Line::new(scene, [far * 65_536 - slope * scene.halves(upper) / 2, slope, lean], 1)
 }
 
 /// The ground that a frame shows, or that its pose gives.
@@ -146,7 +187,9 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
     };
     for _ in 0..64 {
         let drawn = [draw(), draw()];
-        let Some(line) = through(scene, cells, drawn).filter(|line| line.is_allowed(scene)) else { continue };
+        let Some(line) = through(scene, cells, drawn, carried).filter(|line| line.is_allowed(scene)) else {
+            continue;
+        };
         let score = score(scene, cells, &line);
         if best.is_none_or(|(most, _)| score > most) {
             best = Some((score, line));
@@ -164,11 +207,10 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         band /= 2;
     }
     let inliers = near(scene, cells, &line, within.filter(|band| *band <= 64)?);
-    let (top, bottom) = (inliers.first()?.0, inliers.last()?.0);
-    let reach = (bottom - top) / (2 * i128::from(scene.config.cell_height));
+    let reach = inliers.last()?.row - inliers.first()?.row;
     let n = inliers.len() as i128;
-    let enough = n >= fewest && reach >= (rows as i128 / 8).max(2);
-    let squares: i128 = inliers.iter().map(|(halves, p)| (p - line.at(*halves)).pow(2)).sum();
+    let enough = n >= fewest && reach >= (rows / 8).max(2);
+    let squares: i128 = inliers.iter().map(|cell| cell.off.pow(2)).sum();
     let variance = (1 + 4 * squares / (n * n)).min(1 << 20);
     (enough && line.is_allowed(scene)).then_some(Line { variance, ..line })
 }
@@ -183,12 +225,17 @@ pub fn carry(scene: &Scene<'_>, carried: &mut (Option<Line>, u32), measured: Opt
         (Some(old), None) => (carried.1 <= 8).then_some(old),
         (Some(old), Some(new)) => {
             let both = old.variance + new.variance;
-            let apart = |row: usize| new.at(scene.halves(row)) - old.at(scene.halves(row));
-            let agree = [rows / 2, rows - 1].iter().all(|&row| apart(row).pow(2) <= 9 * both);
+            let agree = [rows / 2, rows - 1].iter().all(|&row| {
+                [0, scene.size()[0] - 1].iter().all(|&column| {
+                    let at = |line: &Line| line.at(scene.halves(row), scene.right(column));
+                    (at(&new) - at(&old)).pow(2) <= 9 * both
+                })
+            });
             let gain = 256 * old.variance / both;
             let mix = |old: i128, new: i128| old + ((new - old) * gain).div_euclid(256);
             let variance = (old.variance * (256 - gain) / 256).max(1);
-            let mixed = Line::new(scene, mix(old.level, new.level), mix(old.slope, new.slope), variance);
+            let plane = [mix(old.level, new.level), mix(old.slope, new.slope), mix(old.lean, new.lean)];
+            let mixed = Line::new(scene, plane, variance);
             if agree { mixed.or(Some(new)) } else { Some(new) }
         }
     };

@@ -77,10 +77,16 @@ impl Scene<'_> {
         i128::from(ObstacleConfig::FARTHEST_SIGMAS) * i128::from(self.config.sigma_steps)
     }
 
-    /// The answers of a cell in the order in which they come.
+    /// How far the middle of a column of cells is to the right of the principal point, sixteenths of a px.
+    pub fn right(&self, column: usize) -> i128 {
+        let width = i128::from(self.config.cell_width);
+        16 * width * column as i128 + 8 * (width - 1) - self.cx_16ths
+    }
+
+    /// The answers in every third column of a cell, in the order in which they come.
     fn answers(&self, column: usize, row: usize) -> Vec<i128> {
         let (w, h) = (usize::from(self.config.cell_width), usize::from(self.config.cell_height));
-        let pixels = (0..h).flat_map(|y| (0..w).map(move |x| (x, y)));
+        let pixels = (0..h).flat_map(|y| (0..w).step_by(3).map(move |x| (x, y)));
         let pixels = pixels.map(|(x, y)| (row * h + y) * self.width + column * w + x);
         let counts = |&i: &usize| {
             let doubtful = PixelFlags::FILLED.union(PixelFlags::DAMAGED);
@@ -101,8 +107,8 @@ impl Scene<'_> {
                 groups[1] = vec![d];
             }
         }
-        let area = usize::from(self.config.cell_width) * usize::from(self.config.cell_height);
-        let large = groups.iter().filter(|group| !group.is_empty() && 4 * group.len() >= area);
+        let most = usize::from(self.config.cell_width).div_ceil(3) * usize::from(self.config.cell_height);
+        let large = groups.iter().filter(|group| !group.is_empty() && 4 * group.len() >= most);
         let mean = |group: &Vec<i128>| {
             let n = group.len() as i128;
             // To the nearest step, halves up.

@@ -1,6 +1,6 @@
 //! The nearest surface of each sector, by looking at every column for every sector.
 
-use super::{Found, Kind, Scene, Standing};
+use super::{Found, Kind, Line, Scene, Standing};
 use stereopsis::obstacles::SectorState;
 
 /// What a sector shows.
@@ -63,11 +63,12 @@ pub fn sectors(scene: &Scene<'_>, found: &Found) -> Vec<Sector> {
 /// A sector of these columns.
 fn one(scene: &Scene<'_>, found: &Found, inside: &[usize], middle_mrad: i128) -> Sector {
     let [_, rows] = scene.size();
-    let seen = |standing: &Standing| {
-        let ground = found.ground.map(|line| scene.depth_mm(line.at(scene.halves(standing.seen))));
+    let seen = |x: usize, standing: &Standing| {
+        let at = |line: Line| line.at(scene.halves(standing.seen), scene.right(x));
+        let ground = found.ground.map(|line| scene.depth_mm(at(line)));
         (standing.seen < rows).then(|| ground.unwrap_or(65_535))
     };
-    let seen: Vec<_> = inside.iter().filter_map(|&x| seen(&found.columns[x])).collect();
+    let seen: Vec<_> = inside.iter().filter_map(|&x| seen(x, &found.columns[x])).collect();
     let mut sector = Sector {
         state: if 2 * seen.len() > inside.len() { SectorState::Free } else { SectorState::Blind },
         bearing_mrad: middle_mrad,
@@ -86,15 +87,20 @@ fn one(scene: &Scene<'_>, found: &Found, inside: &[usize], middle_mrad: i128) ->
     let (config, parallax) = (&scene.config, nearest.parallax);
     let (width, height) = (i128::from(config.cell_width), i128::from(config.cell_height));
     let depth = scene.depth_mm(parallax);
-    let across = depth * (16 * width * *x as i128 + 8 * (width - 1) - scene.cx_16ths) / scene.focal_16ths;
+    let across = depth * scene.right(*x) / scene.focal_16ths;
     sector.state = if nearest.kind == Kind::Drop { SectorState::Drop } else { SectorState::Obstacle };
     sector.bearing_mrad = scene.column_bearing(*x).round() as i128;
     sector.depth_mm = depth;
-    sector.sigma_mm = ((depth * nearest.sigma + parallax / 2) / parallax).min(65_535);
+    // Those within a px of the nearest, it among them.
+    let ahead: Vec<_> = standing.iter().map(|(_, s)| parallax - s.parallax).filter(|&a| a <= 32).collect();
+    let mean = ahead.iter().sum::<i128>() / ahead.len() as i128;
+    let sigma = (nearest.sigma * nearest.sigma + mean * mean).isqrt().min(255);
+    sector.sigma_mm = ((depth * sigma + parallax / 2) / parallax).min(65_535);
     sector.range_mm = ((depth * depth + across * across).isqrt()).min(65_535);
     sector.pixels = found.columns[*x].surface.min(65_535) as i128 * width * height;
     if let Some(line) = found.ground.filter(|_| nearest.kind != Kind::Drop) {
-        let above = line.height_mm * (parallax - line.at(scene.halves(nearest.top))) / parallax;
+        let above =
+            line.height_mm * (parallax - line.at(scene.halves(nearest.top), scene.right(*x))) / parallax;
         sector.height_mm = above.clamp(-32_768, 32_767);
     }
     sector

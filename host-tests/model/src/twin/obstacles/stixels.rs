@@ -1,6 +1,7 @@
 //! The cheapest labels of a column by trying all predecessors, and surfaces by flooding.
 
 use super::{Line, Scene};
+use std::ops::RangeInclusive;
 use stereopsis::obstacles::GroundSource;
 
 /// What a cell is.
@@ -51,6 +52,8 @@ struct Column<'a> {
     ground: Option<Line>,
     /// Parallaxes from the uppermost row down.
     parallaxes: Vec<Option<i128>>,
+    /// How far it is to the right of the principal point, sixteenths of a px.
+    right: i128,
 }
 
 impl Column<'_> {
@@ -61,6 +64,28 @@ impl Column<'_> {
 
     fn same_surface(&self) -> i128 {
         (self.tolerance() * 3 / 2).max(32)
+    }
+
+    /// The most that the ground's parallax is at a row.
+    fn highest(&self, line: &Line, row: usize) -> i128 {
+        let halves = self.scene.halves(row);
+        let (at, up) = (line.upright(halves).max(0), i128::from(self.scene.config.obstacle_mm));
+        let left = line.height_mm - up;
+        let rise = if left > 0 { (at * up / left).max(self.tolerance()) } else { 1 << 21 };
+        (line.at(halves, self.right) + rise).max(self.scene.farthest() - 1)
+    }
+
+    /// Whether a near obstacle is the ground two rows below its base, or at the lowest row.
+    fn touches(&self, segment: &Segment) -> bool {
+        let row = (segment.base + 2).min(self.parallaxes.len() - 1);
+        let on = |line: Line| segment.parallax <= self.highest(&line, row);
+        let is_near = segment.parallax >= 2 * self.scene.farthest();
+        segment.kind == Kind::Obstacle && is_near && self.ground.is_some_and(on)
+    }
+
+    /// Whether it has two windows of 9 px and touches the ground.
+    fn stands(&self, segment: &Segment) -> bool {
+        segment.cells * usize::from(self.scene.config.cell_height) >= 2 * 9 && self.touches(segment)
     }
 
     /// What a kind costs at a row.
@@ -79,13 +104,12 @@ impl Column<'_> {
                 _ => 16,
             };
         };
-        let ground = line.at(self.scene.halves(row));
-        let at = ground.max(0);
-        let (height, up) = (line.height_mm, i128::from(config.obstacle_mm));
-        let rise = if height > up { (at * up / (height - up)).max(tolerance) } else { 1 << 21 };
-        let highest = (ground + rise).max(far - 1);
+        let ground = line.at(self.scene.halves(row), self.right);
+        let (height, highest) = (line.height_mm, self.highest(&line, row));
+        // The limits of all columns are those of the principal point's.
+        let at = line.upright(self.scene.halves(row)).max(0);
         let down = i128::from(config.drop_mm);
-        let lowest = ground - (at * down / (height + down)).max(tolerance);
+        let lowest = ground - (at * down / (height + down)).max(self.tolerance());
         let headroom = i128::from(config.headroom_mm);
         let overhead = headroom < 65_535 && height * (parallax - ground) > headroom * parallax;
         match kind {
@@ -154,11 +178,28 @@ impl Column<'_> {
                 let line = self.ground.expect("no drop without a ground");
                 let cell = line.slope * i128::from(self.scene.config.cell_height) / 65_536;
                 let sigma = (sigma * sigma + cell * cell / 12).isqrt().min(255);
-                found.push(segment(line.at(self.scene.halves(base)), sigma));
+                found.push(segment(line.at(self.scene.halves(base), self.right), sigma));
             }
             top = base + 1;
         }
         found
+    }
+
+    /// A segment with all cells of obstacles that are of its surface, where they reach down to the ground.
+    fn whole(&self, segment: &Segment, labels: &[Kind]) -> Segment {
+        let mut whole = segment.clone();
+        let is_of_it = |row: &usize| {
+            let near = |p: i128| (p - segment.parallax).abs() <= self.same_surface();
+            let is_outside = *row < segment.top || *row > segment.base;
+            is_outside && labels[*row] == Kind::Obstacle && self.parallaxes[*row].is_some_and(near)
+        };
+        if segment.kind == Kind::Obstacle {
+            let more: Vec<_> = (0..labels.len()).filter(is_of_it).collect();
+            whole.cells += more.len();
+            whole.top = more.first().map_or(whole.top, |&row| row.min(whole.top));
+            whole.base = more.last().map_or(whole.base, |&row| row.max(whole.base));
+        }
+        if self.touches(&whole) { whole } else { segment.clone() }
     }
 
     fn seen(&self, labels: &[Kind]) -> usize {
@@ -188,42 +229,51 @@ impl Column<'_> {
 /// makes room for the next segment behind it twice.
 pub fn stixels(scene: &Scene<'_>, cells: &[Option<i128>], ground: Option<Line>) -> Vec<Standing> {
     let [columns, rows] = scene.size();
+    let mut seen = Vec::new();
     let all: Vec<_> = (0..columns)
         .map(|x| {
             let parallaxes = (0..rows).map(|y| cells[y * columns + x].map(|d| d + scene.offset)).collect();
-            let column = Column { scene, ground, parallaxes };
+            let column = Column { scene, ground, parallaxes, right: scene.right(x) };
             let labels = column.labels();
             let mut segments = column.segments(&labels);
             segments.retain(|segment| segment.parallax > 0);
             // Of equals the upper one.
             segments.sort_by_key(|segment| (-segment.parallax, segment.top));
-            (segments, column.seen(&labels), column.same_surface())
+            seen.push(column.seen(&labels));
+            let whole = segments.iter().map(|segment| column.whole(segment, &labels));
+            (whole.collect::<Vec<_>>(), column)
         })
         .collect();
     let mut chosen: Vec<Option<Segment>> = all.iter().map(|(found, ..)| found.first().cloned()).collect();
     let area = usize::from(scene.config.cell_width) * usize::from(scene.config.cell_height);
     let mut surfaces = vec![0; columns];
     for tried in 1..=3 {
-        surfaces = (0..columns).map(|x| flooded(&chosen, x, all[x].2)).collect();
-        let specks: Vec<_> = (0..columns)
-            .filter(|&x| chosen[x].is_some() && surfaces[x] * area < usize::from(scene.config.min_pixels))
-            .collect();
+        let stands: Vec<_> =
+            (0..columns).map(|x| chosen[x].as_ref().is_some_and(|found| all[x].1.stands(found))).collect();
+        let flood = |x: usize| flooded(&chosen, x, all[x].1.same_surface());
+        let supported = |x: usize| {
+            let cells = |x: usize| chosen[x].as_ref().map_or(0, |found| found.cells);
+            let sum: usize = flood(x).map(cells).sum();
+            let standing: usize = flood(x).filter(|&x| stands[x]).map(cells).sum();
+            let support = sum.max(2 * standing) * area;
+            if support >= usize::from(scene.config.min_pixels) { sum } else { 0 }
+        };
+        surfaces = (0..columns).map(supported).collect();
+        let specks: Vec<_> = (0..columns).filter(|&x| chosen[x].is_some() && surfaces[x] == 0).collect();
         for x in specks {
-            let behind = chosen[x].as_ref().map_or(0, |segment| segment.parallax);
-            let next = all[x].0.iter().find(|segment| segment.parallax < behind);
+            let Some(speck) = chosen[x].take() else { continue };
+            if all[x].1.touches(&speck) {
+                seen[x] = seen[x].max(speck.base + 1);
+            }
+            let next = all[x].0.iter().find(|segment| segment.parallax < speck.parallax);
             chosen[x] = next.filter(|_| tried < 3).cloned();
         }
     }
-    (0..columns)
-        .map(|x| {
-            let surface = if chosen[x].is_some() { surfaces[x] } else { 0 };
-            Standing { found: chosen[x].clone(), seen: all[x].1, surface }
-        })
-        .collect()
+    (0..columns).map(|x| Standing { found: chosen[x].clone(), seen: seen[x], surface: surfaces[x] }).collect()
 }
 
-/// Cells of the surface that column `x` belongs to, by going left and right as long as columns are connected.
-fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> usize {
+/// Columns of the surface that column `x` belongs to, by going left and right as long as columns are connected.
+fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> RangeInclusive<usize> {
     let connected = |a: &Option<Segment>, b: &Option<Segment>| match (a, b) {
         (Some(a), Some(b)) => {
             let edges_apart = a.base.abs_diff(b.base);
@@ -242,5 +292,5 @@ fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> usize {
     while last + 1 < chosen.len() && connected(&chosen[last], &chosen[last + 1]) {
         last += 1;
     }
-    chosen[first..=last].iter().flatten().map(|segment| segment.cells).sum()
+    first..=last
 }

@@ -220,7 +220,7 @@ impl ObstaclesView<'_> {
         let of_it = ahead.filter(|&ahead| ahead <= Disparity::ONE.into());
         let (count, sum) = of_it.fold((0, 0), |(count, sum), ahead| (count + 1, sum + ahead));
         let (ahead, sigma) = (sum.checked_div(count).unwrap_or(0), i32::from(nearest.sigma));
-        let sigma = (sigma * sigma + ahead * ahead).isqrt().min(255) as u8;
+        let sigma = ((sigma * sigma + ahead * ahead) as u32).isqrt().min(255) as u8;
         Column { sigma, ..*nearest }
     }
 

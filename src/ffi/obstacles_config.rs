@@ -51,6 +51,8 @@ pub struct CObstacleConfig {
     pub cell_height: u8,
     /// Least confidence of an answer that counts, where rows have confidences.
     pub min_confidence: u8,
+    /// Least confidence of an answer above the horizon, where rows have confidences.
+    pub sky_confidence: u8,
     /// Number of sectors that the field of view is cut into, 1 to 32.
     pub sectors: u8,
     /// Least share of cells with an answer in a frame, percent; fewer make it blind.
@@ -90,6 +92,7 @@ impl From<ObstacleConfig> for CObstacleConfig {
             cell_width: config.cell_width,
             cell_height: config.cell_height,
             min_confidence: config.min_confidence,
+            sky_confidence: config.sky_confidence,
             sectors: config.sectors,
             least_answered: config.least_answered,
             most_lost: config.most_lost,
@@ -127,6 +130,7 @@ impl CObstacleConfig {
             cell_height: self.cell_height,
             sigma_steps: self.sigma_steps,
             min_confidence: self.min_confidence,
+            sky_confidence: self.sky_confidence,
             ground,
             obstacle_mm: self.obstacle_mm,
             drop_mm: self.drop_mm,

@@ -1667,6 +1667,10 @@ typedef struct stereopsis_obstacles_config {
    */
   uint8_t min_confidence;
   /**
+   * Least confidence of an answer above the horizon, where rows have confidences.
+   */
+  uint8_t sky_confidence;
+  /**
    * Number of sectors that the field of view is cut into, 1 to 32.
    */
   uint8_t sectors;

@@ -45,6 +45,9 @@ pub struct ObstacleConfig {
     pub sigma_steps: u16,
     /// Least confidence of an answer that counts, where confidences are given.
     pub min_confidence: u8,
+    /// Least confidence of an answer above the horizon, where confidences are given: below it the ground
+    /// tells what is wrong, above it nothing does.
+    pub sky_confidence: u8,
     /// Where the ground comes from.
     pub ground: GroundSource,
     /// Least height of an obstacle above the ground, mm.
@@ -77,6 +80,7 @@ impl ObstacleConfig {
         cell_height: 0,
         sigma_steps: 0,
         min_confidence: 0,
+        sky_confidence: 0,
         ground: GroundSource::Absent,
         obstacle_mm: 0,
         drop_mm: 0,
@@ -86,6 +90,11 @@ impl ObstacleConfig {
         least_answered: 0,
         most_lost: 0,
     };
+
+    /// Least confidence of an answer, above the horizon or below it.
+    pub(super) fn least_confidence(&self, is_sky: bool) -> u8 {
+        self.min_confidence.max(if is_sky { self.sky_confidence } else { 0 })
+    }
 
     pub(super) fn check(&self) -> Result<(), ObstacleError> {
         let side = 1..=16;
@@ -120,7 +129,8 @@ impl ObstacleConfig {
 
 impl Default for ObstacleConfig {
     /// Cells of 4 x 5 px, a deviation of 0.15 px as all methods have it, a ground 0.1 m to 3 m below a camera
-    /// that is pitched by at most 27 degrees and rolled by at most 7, obstacles and drops of 5 cm, and 16 sectors.
+    /// that is pitched by at most 27 degrees and rolled by at most 7, obstacles and drops of 5 cm, and 16
+    /// sectors.
     ///
     /// The least area is four matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
     /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth
@@ -131,6 +141,7 @@ impl Default for ObstacleConfig {
             cell_height: 5,
             sigma_steps: 5,
             min_confidence: 0,
+            sky_confidence: 0,
             ground: GroundSource::Searched {
                 least_height_mm: 100,
                 most_height_mm: 3000,
@@ -157,7 +168,8 @@ pub enum ObstacleError {
     Cells,
     /// The number of sectors is not 1 to 32.
     Sectors,
-    /// The given height is zero, the given pitch or roll is over 500 mrad, or the heights searched are in no order.
+    /// The given height is zero, the given pitch or roll is over 500 mrad, or the heights searched are in no
+    /// order.
     Pose,
     /// The deviation is not 1 to 320 steps, or the height of an obstacle or the depth of a drop is zero.
     Limits,
@@ -176,7 +188,7 @@ pub enum ObstacleError {
 error_text!(ObstacleError {
     Self::Cells => "a cell must have sides of 1 to 16 px and at most 255 px",
     Self::Sectors => "there must be 1 to 32 sectors",
-    Self::Pose => "the ground needs a height over zero, a pitch and a roll of at most 500 mrad, and heights in order",
+    Self::Pose => "the ground needs a height over zero, pitch and roll up to 500 mrad, and heights in order",
     Self::Limits => "the deviation must be 1 to 320 steps, and obstacles and drops over 0 mm",
     Self::Columns { needed } => "the memory must hold {needed} columns of cells",
     Self::Rows { needed } => "the memory must hold {needed} rows of cells, at most 255",

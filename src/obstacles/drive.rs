@@ -1,10 +1,18 @@
 //! From free space to a decision: go on, slow down, stop, or nothing is known.
 
-use super::column::StixelKind;
+use super::column::{Column, MOST_GAP, StixelKind};
 use super::config::GroundSource;
 use super::finder::ObstaclesView;
+use super::ground::Ground;
 use super::held::{Held, Hysteresis};
+use super::interval::Interval;
+use super::setup::Setup;
 use super::watchdog::BlindReason;
+use crate::units::Disparity;
+
+/// Columns of pixels side by side, two matching windows, up to which a window sees more than one surface of a
+/// thing, so that its height is not known.
+const NARROW_PX: u32 = 18;
 
 /// How a vehicle drives and brakes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -100,9 +108,9 @@ impl DriveRule {
     /// Decides on a finished frame, at a speed.
     ///
     /// In this order: blind by the watchdog; stop for what is within the stopping distance; blind where the
-    /// ground is not found, or more than an eighth of the corridor's columns do not see it for twice the
-    /// stopping distance or up to an obstacle; slow for what is within twice the stopping distance or the
-    /// time to contact; clear.
+    /// ground is not found, more than an eighth of the corridor's columns do not see it for twice the
+    /// stopping distance or up to an obstacle, or one of them sees something else before that and nothing
+    /// nearer is known; slow for what is within twice the stopping distance or the time to contact; clear.
     pub fn decide(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Verdict {
         let stopping_mm = self.stopping_mm(speed_mm_s);
         let needed = stopping_mm.saturating_mul(2);
@@ -121,7 +129,8 @@ impl DriveRule {
         if searched && frame.state.carried.ground.is_none() {
             return verdict(Decision::Blind(BlindReason::NoGround), contact_ms);
         }
-        if 8 * corridor.unseen > corridor.columns || corridor.columns == 0 {
+        let is_hidden = corridor.hidden.is_some_and(|mm| nearest.is_none_or(|nearest| mm < nearest));
+        if 8 * corridor.unseen > corridor.columns || corridor.columns == 0 || is_hidden {
             return verdict(Decision::Blind(BlindReason::Unseen), contact_ms);
         }
         let soon = contact_ms.is_some_and(|ms| ms <= self.config.slow_ms.into());
@@ -146,14 +155,18 @@ struct Corridor {
     columns: usize,
     /// Those of them that see the ground neither for the needed depth nor up to an obstacle.
     unseen: usize,
+    /// Depth of the nearest that is neither ground nor a surface that is believed in, mm.
+    hidden: Option<u16>,
 }
 
 impl Corridor {
     fn new(frame: &ObstaclesView<'_>, width_mm: u16, needed_mm: u16) -> Self {
-        let mut found = Self { kind: StixelKind::Nothing, nearest: None, columns: 0, unseen: 0 };
+        let mut found =
+            Self { kind: StixelKind::Nothing, nearest: None, columns: 0, unseen: 0, hidden: None };
         let Some(setup) = frame.setup() else { return found };
         let ground = frame.state.carried.ground;
-        let half = i32::from(width_mm) / 2;
+        let needed = Needed::new(&setup, ground.as_ref(), needed_mm);
+        let (half, mut low) = (i32::from(width_mm) / 2, Low::default());
         let middle = (0..setup.columns).min_by_key(|&x| setup.across_mm(x, u16::MAX).abs());
         for (x, column) in frame.columns.iter().enumerate().take(setup.columns) {
             let depth = setup.depth_mm(column.parallax);
@@ -162,13 +175,118 @@ impl Corridor {
             if column.is_supported() && inside(surely) && found.nearest.is_none_or(|mm| surely < mm) {
                 (found.nearest, found.kind) = (Some(surely), column.kind);
             }
+            let hides = ground.and_then(|ground| frame.hides(&setup, x, column, &ground, &needed));
             if inside(needed_mm) {
                 found.columns += 1;
                 let seen = setup.seen_mm(x, column, ground.as_ref()).is_some_and(|mm| mm >= needed_mm);
                 let ends_there = column.is_supported() && (depth <= needed_mm || column.is_seen_up_to());
-                found.unseen += usize::from(!seen && !ends_there);
+                found.unseen += usize::from(!seen && !ends_there && hides.is_none());
             }
+            let Some(hides) = hides.filter(|hides| hides.from_mm < needed_mm && inside(hides.from_mm)) else {
+                found.end(&mut low);
+                continue;
+            };
+            low.columns_px += u32::from(setup.config.cell_width);
+            let nearest = if hides.is_low { &mut low.nearest } else { &mut found.hidden };
+            *nearest = Some(nearest.map_or(hides.to_mm, |mm| mm.min(hides.to_mm)));
         }
+        found.end(&mut low);
         found
+    }
+
+    /// Ends a run of columns: what is low is passed over where the run is wide enough to tell its height.
+    fn end(&mut self, run: &mut Low) {
+        if run.columns_px <= NARROW_PX {
+            self.hidden = [self.hidden, run.nearest].into_iter().flatten().min();
+        }
+        *run = Low::default();
+    }
+}
+
+/// A run of columns whose sight of the ground ends.
+#[derive(Clone, Copy, Default)]
+struct Low {
+    columns_px: u32,
+    /// Depth of the nearest of what is lower than an obstacle, mm.
+    nearest: Option<u16>,
+}
+
+/// What ends a column's sight of the ground without being a surface.
+#[derive(Clone, Copy)]
+struct Hides {
+    /// Depths between which it stands, mm.
+    from_mm: u16,
+    to_mm: u16,
+    /// Whether it is lower than an obstacle, as is all behind it.
+    is_low: bool,
+}
+
+impl Hides {
+    /// What is beyond all that is needed.
+    const BEYOND: Self = Self { from_mm: u16::MAX, to_mm: u16::MAX, is_low: true };
+}
+
+/// Parallaxes of what is as far as has to be seen.
+#[derive(Clone, Copy)]
+struct Needed {
+    parallax: i32,
+    /// That of the ground that an obstacle there hides.
+    ground: i32,
+}
+
+impl Needed {
+    fn new(setup: &Setup, ground: Option<&Ground>, needed_mm: u16) -> Self {
+        let parallax = setup.millimetre_steps.checked_div(needed_mm.into()).unwrap_or(u32::MAX);
+        let parallax = parallax.min(i32::MAX as u32) as i32;
+        let hidden =
+            ground.map_or(0, |ground| setup.above_obstacle(parallax.clamp(0, 0xffff) as u16, ground));
+        Self { parallax, ground: hidden.into() }
+    }
+}
+
+impl ObstaclesView<'_> {
+    /// What ends the sight of the ground in column `x`, if that are answers of neither the ground nor a
+    /// surface. It stands where it is as high as an obstacle and hides the ground, or further.
+    fn hides(
+        &self,
+        setup: &Setup,
+        x: usize,
+        column: &Column,
+        ground: &Ground,
+        needed: &Needed,
+    ) -> Option<Hides> {
+        let answer = |row: usize| {
+            let d = self.cells.get(row * setup.columns + x).filter(|d| d.is_some())?;
+            Some((row, i32::from(d.raw()) + setup.offset_steps))
+        };
+        let above = (0..usize::from(column.seen)).rev().take(usize::from(MOST_GAP) + 1);
+        let (row, parallax) = above.into_iter().find_map(answer)?;
+        let is_of_it =
+            column.kind == StixelKind::Drop || parallax <= column.parallax + i32::from(Disparity::ONE);
+        if column.is_supported() && column.is_seen_up_to() && is_of_it {
+            return None;
+        }
+        let cells = setup.cells(self.cells);
+        let right = cells.right_16ths(x);
+        let ground_at = |row: usize| ground.parallax(cells.halves(row), right);
+        // Near the horizon an answer may be the sky's.
+        let at = ground_at(row);
+        let own = if at >= 2 * cells.farthest { parallax } else { at };
+        if at <= needed.ground && own <= needed.parallax {
+            return Some(Hides::BEYOND);
+        }
+        let (mut is_low, mut gap) = (true, 0);
+        let beside = ground.beside_256ths(right);
+        for row in (0..=row).rev().take_while(|&row| ground_at(row) > needed.ground) {
+            let bins = self.bins.as_chunks().0.get(row);
+            let between = bins.map(|bins| Interval::load(bins).at(beside, cells.farthest));
+            let lies = |p: i32| between.is_some_and(|between| (between.low..=between.high).contains(&p));
+            let answer = answer(row);
+            gap = if answer.is_some() { 0 } else { gap + 1 };
+            is_low &= gap <= MOST_GAP && answer.is_none_or(|(_, p)| lies(p));
+        }
+        let (own_mm, ground_mm) = (setup.depth_mm(own), setup.depth_mm(at));
+        let from_mm = own_mm.min(setup.above_obstacle(ground_mm, ground));
+        Some(Hides { from_mm, to_mm: own_mm.min(ground_mm), is_low })
     }
 }

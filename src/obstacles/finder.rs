@@ -33,9 +33,9 @@ pub struct Obstacles<const C: usize, const R: usize> {
 /// A borrowed [`Obstacles`] of any size.
 #[derive(Debug)]
 pub struct ObstaclesView<'a> {
-    cells: &'a mut [Disparity],
+    pub(super) cells: &'a mut [Disparity],
     filling: &'a mut [Filling],
-    bins: &'a mut [u8],
+    pub(super) bins: &'a mut [u8],
     pub(super) columns: &'a mut [Column],
     labels: &'a mut [u8],
     pub(super) bearings: &'a mut [i16],
@@ -182,6 +182,7 @@ impl ObstaclesView<'_> {
     /// Begins a frame. A frame that was not finished is forgotten.
     pub fn begin(&mut self) {
         self.state.watchdog = Watchdog::NEW;
+        self.state.sky = self.setup().map_or(0, |setup| setup.sky(self.state.carried.ground));
         self.state.next = 0;
         self.filling.fill(Filling::EMPTY);
         self.cells.fill(Disparity::NONE);
@@ -214,7 +215,8 @@ impl ObstaclesView<'_> {
         self.pass(&setup, y);
         let cells = self.filling.get_mut(..setup.columns).unwrap_or_default();
         let width = usize::from(setup.config.cell_width);
-        let all = fill(cells, width, disparities, flags, confidences, setup.config.min_confidence);
+        let least = setup.config.least_confidence(y < self.state.sky.into());
+        let all = fill(cells, width, disparities, flags, confidences, least);
         self.state.watchdog.row(all);
         self.state.next = y + 1;
         if self.state.next.is_multiple_of(usize::from(setup.config.cell_height.max(1))) {
@@ -251,16 +253,14 @@ impl ObstaclesView<'_> {
         count(self.bins.chunks_exact_mut(BINS).nth(row).unwrap_or_default(), cells, setup.shift);
     }
 
-    /// Ends a frame: finds its ground, stixels and surfaces, and says if the frame is to be trusted.
-    ///
-    /// The ground is carried over frames that are not.
+    /// Ends a frame: finds its ground, stixels and surfaces, and says if the frame is to be trusted. The
+    /// ground is carried over frames that are not.
     pub fn finish(&mut self) -> Result<(), BlindReason> {
         let Some(setup) = self.setup() else { return Err(BlindReason::NoFrame) };
         self.pass(&setup, setup.height);
         let (config, rig) = (&setup.config, &setup.rig);
-        let all = (setup.columns * setup.rows) as u32;
-        self.state.blind = self.state.watchdog.judge(config, setup.height as u32, all);
-        let sound = self.state.blind.is_none();
+        let [rows, cells] = [setup.height, setup.columns * setup.rows].map(|count| count as u32);
+        self.state.blind = self.state.watchdog.judge(config, rows, cells);
         let cells = setup.cells(self.cells);
         let measured = match config.ground {
             GroundSource::Absent => None,
@@ -268,13 +268,13 @@ impl ObstaclesView<'_> {
                 self.state.carried = CarriedGround::NONE;
                 Ground::given(pitch_mrad, roll_mrad, height_mm, rig)
             }
-            GroundSource::Searched { .. } if sound => {
+            GroundSource::Searched { .. } if self.state.blind.is_none() => {
                 fit(&cells, self.bins, setup.shift, self.state.carried.ground, &config.ground, rig)
             }
             GroundSource::Searched { .. } => None,
         };
         self.state.carried.update(measured, cells.corners(), rig);
-        let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins);
+        let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins, setup.narrow);
         let columns = self.columns.get_mut(..setup.columns).unwrap_or_default();
         stixels(&labelling, columns, self.labels.get_mut(..setup.rows).unwrap_or_default());
         self.state.is_finished = true;

@@ -8,6 +8,9 @@ use crate::units::Disparity;
 /// Most of what a slope or an inclination may be, steps of disparity per row in 65536ths.
 const STEEPEST: i64 = 1 << 30;
 
+/// Steps in which a plane is given a height: its pitch changes with it.
+const BOUNDING_STEPS: usize = 4;
+
 /// Numbers of a rig, rounded to integers.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RigNumbers {
@@ -45,8 +48,8 @@ impl RigNumbers {
 /// A ground plane: its parallax `d + doffs` grows by a constant from row to row, and by another one from
 /// column to column.
 ///
-/// With the camera at height `H`, pitched down by `theta`, rolled to the right by `rho`, at column `u` and row
-/// `v`:
+/// With the camera at height `H`, pitched down by `theta`, rolled to the right by `rho`, at column `u` and
+/// row `v`:
 ///
 /// `d + doffs = b / H (sin rho cos theta (u - cx) + cos rho cos theta (v - cy) + f sin theta)`
 ///
@@ -87,6 +90,15 @@ impl Ground {
     /// Parallax of the ground at a half-row and a position to the right, whole steps of disparity.
     pub(super) fn parallax(&self, halves: i64, right_16ths: i64) -> i32 {
         (self.parallax_256ths(halves) + self.beside_256ths(right_16ths)) >> 8
+    }
+
+    /// Number of rows in which the ground is not seen at any of these positions to the right of the principal
+    /// point, sixteenths of a px.
+    pub(super) fn rows_above(&self, right_16ths: [i64; 2]) -> u16 {
+        let beside = right_16ths.map(|right| (i64::from(self.lean) * right) >> 4);
+        let below = -self.level.saturating_add(beside[0].max(beside[1]));
+        let rows = below.max(0).saturating_add(self.slope - 1).checked_div(self.slope);
+        rows.map_or(0, |rows| rows.min(u16::MAX.into()) as u16)
     }
 
     /// Downward pitch of the camera, radians.
@@ -142,6 +154,29 @@ impl Ground {
         let lean = round(slope * roll);
         let ground = Self::from_line(round(level) as i64, slope as i64, lean as i64, 1, rig)?;
         Some(Self { height_mm, ..ground })
+    }
+
+    /// The plane with the nearest height that a search allows, and the same parallax at half-row `halves`;
+    /// `None` if its own height is more than an eighth off.
+    pub(super) fn bounded(&self, source: &GroundSource, halves: i64, rig: &RigNumbers) -> Option<Self> {
+        let GroundSource::Searched { least_height_mm, most_height_mm, .. } = *source else {
+            return Some(*self);
+        };
+        let height_mm = self.height_mm.clamp(least_height_mm, most_height_mm.max(least_height_mm));
+        if 8 * u32::from(self.height_mm.abs_diff(height_mm)) > u32::from(height_mm) {
+            return None;
+        }
+        let mut plane = *self;
+        for _ in 0..BOUNDING_STEPS {
+            if plane.height_mm == height_mm {
+                break;
+            }
+            // The higher the camera, the less the parallax grows.
+            let slope = (plane.slope * i64::from(plane.height_mm)).checked_div(height_mm.into())?;
+            let level = plane.level + (plane.slope - slope) * halves / 2;
+            plane = Self::from_line(level, slope, plane.lean.into(), plane.variance, rig)?;
+        }
+        Some(Self { height_mm, ..plane })
     }
 
     /// Whether the plane is within what a search allows.

@@ -4,6 +4,9 @@ use super::config::ObstacleConfig;
 use super::ground::Ground;
 use super::v_disparity::BINS;
 
+/// Most that the parallax of something on the ground may be off the ground's, steps.
+const MOST: i64 = 1 << 21;
+
 /// What a row shows of the ground: its parallax, and how far from it an answer is still of the ground.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Interval {
@@ -13,6 +16,8 @@ pub(super) struct Interval {
     up: i32,
     /// Most below it, steps.
     down: i32,
+    /// How far an answer may be from it where the ground has to be seen, steps: three eighths of an obstacle.
+    close: i32,
 }
 
 /// Parallaxes between which a cell shows ground.
@@ -27,30 +32,41 @@ pub(super) struct Between {
 impl Interval {
     /// Writes the numbers over a row of the v-disparity, which has been read by then.
     pub(super) fn store(&self, bins: &mut [u8; BINS]) {
-        let [expected, up, down, ..] = bins.as_chunks_mut::<4>().0 else { return };
-        (*up, *down) = (self.up.to_le_bytes(), self.down.to_le_bytes());
-        *expected = self.expected_256ths.to_le_bytes();
+        let numbers = [self.expected_256ths, self.up, self.down, self.close];
+        for (to, number) in bins.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
+            *to = number.to_le_bytes();
+        }
     }
 
     pub(super) fn load(bins: &[u8; BINS]) -> Self {
         let number =
             |place: usize| bins.as_chunks::<4>().0.get(place).map_or(0, |bytes| i32::from_le_bytes(*bytes));
-        Self { expected_256ths: number(0), up: number(1), down: number(2) }
+        Self { expected_256ths: number(0), up: number(1), down: number(2), close: number(3) }
+    }
+
+    /// Whether a parallax is close to the ground's in a row of numbers that were stored, where the ground's
+    /// has so much more than in the column of the principal point.
+    pub(super) fn is_close(bins: &[u8; BINS], parallax: i32, beside_256ths: i32) -> bool {
+        let row = Self::load(bins);
+        (parallax - ((row.expected_256ths + beside_256ths) >> 8)).abs() <= row.close
     }
 
     /// What the row at half-row `halves` shows of a ground, if there is one.
     pub(super) fn new(ground: Option<Ground>, halves: i64, config: &ObstacleConfig, tolerance: i32) -> Self {
         // Without a ground it is beyond all that counts.
-        let Some(ground) = ground else { return Self { expected_256ths: -1 << 28, up: 0, down: 0 } };
+        let Some(ground) = ground else {
+            return Self { expected_256ths: -1 << 28, up: 0, down: 0, close: 0 };
+        };
         let expected_256ths = ground.parallax_256ths(halves);
         let (height, at) = (i64::from(ground.height_mm), i64::from(expected_256ths.max(0) >> 8));
         // H (p - p_ground) / p = h at p - p_ground = p_ground h / (H - h), and -h at p_ground h / (H + h).
         let limit = |h: i64, left: i64| match left {
-            1.. => ((at * h).checked_div(left).unwrap_or(0) as i32).max(tolerance),
-            _ => 1 << 21,
+            1.. => ((at * h).checked_div(left).unwrap_or(0).min(MOST) as i32).max(tolerance),
+            _ => MOST as i32,
         };
         let (up, down) = (i64::from(config.obstacle_mm), i64::from(config.drop_mm));
-        Self { expected_256ths, up: limit(up, height - up), down: limit(down, height + down) }
+        let (up, down) = (limit(up, height - up), limit(down, height + down));
+        Self { expected_256ths, up, down, close: (3 * up / 8).max(tolerance) }
     }
 
     /// What a cell of the row shows, where the ground's parallax has so much more than in the column of the

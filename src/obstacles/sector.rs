@@ -84,6 +84,14 @@ impl Setup {
         (i64::from(depth_mm) * right).checked_div(self.rig.focal_16ths.into()).unwrap_or(0) as i32
     }
 
+    /// The share that an obstacle leaves of the camera's height, of a number: of the depth of the ground that
+    /// it hides it is the obstacle's depth, of its parallax it is that ground's.
+    pub(super) fn above_obstacle(&self, number: u16, ground: &Ground) -> u16 {
+        let (height, obstacle) = (u32::from(ground.height_mm), u32::from(self.config.obstacle_mm));
+        let left = (u32::from(number) * height.saturating_sub(obstacle)).checked_div(height);
+        left.unwrap_or(0) as u16
+    }
+
     /// Deviation of a column's depth, mm.
     pub(super) fn sigma_mm(&self, column: &Column) -> u16 {
         let depth = u64::from(self.depth_mm(column.parallax));

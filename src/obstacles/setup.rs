@@ -1,7 +1,7 @@
 //! What a start settles: limits, a rig in integers, and the number of cells.
 
-use super::config::{ObstacleConfig, ObstacleError};
-use super::ground::RigNumbers;
+use super::config::{GroundSource, ObstacleConfig, ObstacleError};
+use super::ground::{Ground, RigNumbers};
 use super::v_disparity::{Cells, bin_shift};
 use crate::depth::DepthScale;
 use crate::units::Disparity;
@@ -19,6 +19,9 @@ pub(super) struct Setup {
     pub(super) rows: usize,
     pub(super) height: usize,
     pub(super) shift: u32,
+    /// Columns of cells that end within the largest disparity from the left edge: fewer can be searched
+    /// there.
+    pub(super) narrow: u16,
     /// Bearings of the first and the last column of pixels, thousandths of a radian.
     pub(super) ends_mrad: [i16; 2],
 }
@@ -33,6 +36,7 @@ impl Setup {
         rows: 0,
         height: 0,
         shift: 0,
+        narrow: 0,
         ends_mrad: [0; 2],
     };
 
@@ -64,8 +68,20 @@ impl Setup {
             rows,
             height,
             shift: bin_shift(largest),
+            narrow: (largest.raw() / Disparity::ONE).checked_div(config.cell_width.into()).unwrap_or(0),
             ends_mrad: [rig.bearing_mrad(0.0), rig.bearing_mrad(last)],
         })
+    }
+
+    /// Rows of pixels above the horizon: those in which no column sees the ground, or half of those above the
+    /// principal point where none is known.
+    pub(super) fn sky(&self, ground: Option<Ground>) -> u16 {
+        let ends = [0, self.columns.saturating_sub(1)].map(|x| self.cells(&[]).right_16ths(x));
+        match ground {
+            _ if self.config.ground == GroundSource::Absent => 0,
+            Some(ground) => ground.rows_above(ends),
+            None => u16::try_from(self.rig.cy_halves.div_euclid(4)).unwrap_or(0),
+        }
     }
 
     /// The cells of a frame, with the numbers that their geometry needs.

@@ -10,6 +10,8 @@ pub struct ObstaclesState {
     pub(super) setup: Setup,
     pub(super) carried: CarriedGround,
     pub(super) watchdog: Watchdog,
+    /// Rows of pixels above the horizon.
+    pub(super) sky: u16,
     /// The next row of pixels.
     pub(super) next: usize,
     pub(super) is_finished: bool,
@@ -24,6 +26,7 @@ impl ObstaclesState {
             setup: Setup::NOT_STARTED,
             carried: CarriedGround::NONE,
             watchdog: Watchdog::NEW,
+            sky: 0,
             next: 0,
             is_finished: false,
             blind: None,

@@ -36,6 +36,8 @@ pub(super) struct Labelling<'a> {
     tolerance: i32,
     /// Largest step of parallax between cells of one surface: three deviations of a difference, or one px.
     pub(super) same_surface: i32,
+    /// Number of columns in which fewer disparities than elsewhere can be searched.
+    pub(super) narrow: usize,
     /// An [`Interval`] for each row.
     intervals: &'a [u8],
 }
@@ -47,6 +49,7 @@ impl<'a> Labelling<'a> {
         ground: Option<Ground>,
         config: ObstacleConfig,
         bins: &'a mut [u8],
+        narrow: u16,
     ) -> Self {
         let sigma = u32::from(config.sigma_steps);
         let tolerance = 3 * (sigma * sigma + ground.map_or(0, |g| g.variance)).isqrt() as i32;
@@ -54,7 +57,7 @@ impl<'a> Labelling<'a> {
         for (row, bins) in bins.as_chunks_mut().0.iter_mut().enumerate().take(cells.rows) {
             Interval::new(ground, cells.halves(row), &config, tolerance).store(bins);
         }
-        Self { cells, ground, config, tolerance, same_surface, intervals: bins }
+        Self { cells, ground, config, tolerance, same_surface, narrow: narrow.into(), intervals: bins }
     }
 
     /// Whether a surface stands above the headroom.
@@ -123,7 +126,7 @@ impl<'a> Labelling<'a> {
         let whole = self.whole(column, segment, labels);
         let found = if self.touches(column, &whole) { whole } else { segment };
         let seen = match self.ground {
-            Some(_) => self.seen(column, labels),
+            Some(_) => self.seen(column, beside, labels),
             // Without a ground a column is seen where enough of it has answers.
             None if self.config.ground == GroundSource::Absent
                 && 100 * answered >= usize::from(self.config.least_answered) * rows =>
@@ -234,17 +237,24 @@ impl<'a> Labelling<'a> {
         Some(Column { kind: StixelKind::Obstacle, parallax, sigma, ..segment })
     }
 
-    /// Uppermost row of ground that is seen from the lowest row on, with gaps of at most two rows.
-    fn seen(&self, column: usize, labels: &[u8]) -> u8 {
+    /// Uppermost row of ground that is seen from the lowest row on, with gaps of at most two rows without an
+    /// answer, or of one with an answer that is not close to the ground's.
+    fn seen(&self, column: usize, beside: i32, labels: &[u8]) -> u8 {
         let (mut seen, mut gap) = (self.cells.rows as u8, 0);
-        for (row, &label) in labels.iter().enumerate().take(self.cells.rows).rev() {
-            let shown = self.cells.parallax(column, row).is_some();
-            if usize::from(label) == GROUND && shown {
-                (seen, gap) = (row as u8, 0);
-                continue;
-            }
-            gap += 1;
-            if gap > MOST_GAP || shown && usize::from(label) != GROUND {
+        let rows = labels.iter().zip(self.intervals.as_chunks().0).enumerate().take(self.cells.rows);
+        for (row, (&label, interval)) in rows.rev() {
+            let is_ground = usize::from(label) == GROUND;
+            gap += match self.cells.parallax(column, row) {
+                Some(parallax) if is_ground && Interval::is_close(interval, parallax, beside) => {
+                    (seen, gap) = (row as u8, 0);
+                    continue;
+                }
+                // One that is off may be chance; two, or one beside a gap, are something that stands there.
+                Some(_) if is_ground => MOST_GAP,
+                Some(_) => break,
+                None => 1,
+            };
+            if gap > MOST_GAP {
                 break;
             }
         }

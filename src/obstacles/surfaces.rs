@@ -51,13 +51,14 @@ fn support(columns: &mut [Column], labelling: &Labelling<'_>, same_surface: i32)
     let area = u32::from(config.cell_width) * u32::from(config.cell_height);
     let (mut rest, mut place) = (columns, 0);
     while let Some(first) = rest.first() {
-        let (mut last, mut length, mut cells, mut standing) = (*first, 0, 0, 0);
+        let (mut last, mut length, mut cells, mut all, mut standing) = (*first, 0, 0, 0, 0);
         for (x, next) in (place..).zip(&*rest) {
             if length > 0 && !connected(&last, next, same_surface) {
                 break;
             }
-            let own = u32::from(next.cells);
-            (last, length, cells) = (*next, length + 1, cells + own);
+            // Where fewer disparities can be searched, answers agree more often by chance.
+            let own = u32::from(next.cells) << u32::from(x >= labelling.narrow);
+            (last, length, cells, all) = (*next, length + 1, cells + u32::from(next.cells), all + own);
             standing += if labelling.stands(x, next) { own } else { 0 };
         }
         let (run, after) = rest.split_at_mut_checked(length).unwrap_or_default();
@@ -66,7 +67,7 @@ fn support(columns: &mut [Column], labelling: &Labelling<'_>, same_surface: i32)
         }
         for column in run {
             let enough = column.kind != StixelKind::Nothing
-                && (cells.max(2 * standing) * area >= u32::from(config.min_pixels));
+                && (all.max(2 * standing) * area >= 2 * u32::from(config.min_pixels));
             column.surface = if enough { cells.min(u16::MAX.into()) as u16 } else { 0 };
         }
         (rest, place) = (after, place + length);

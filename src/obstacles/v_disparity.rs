@@ -214,8 +214,9 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
     sums
 }
 
-/// Least squares over the cells within `band` of a plane, of which there have to be `fewest`. The roll stays
-/// where they reach over too little of the picture's width.
+/// Least squares over the cells within `band` of a plane, of which there have to be `fewest`, and the number
+/// of rows that they reach over. The roll stays where they reach over too little of the picture's width. The
+/// variance is four times that of the mean: cells side by side share windows.
 fn refined(
     cells: &Cells<'_>,
     plane: &Ground,
@@ -223,7 +224,7 @@ fn refined(
     fewest: i64,
     source: &GroundSource,
     rig: &RigNumbers,
-) -> Option<Ground> {
+) -> Option<(Ground, usize)> {
     let s = sums(cells, plane, band);
     if s.n < fewest {
         return None;
@@ -243,21 +244,23 @@ fn refined(
         false => 0,
     };
     let per_half = ((ap << 16) - per_cell * ax).checked_div(aa)?;
+    let rest = about(s.pp, s.p, s.p)? - ((per_half * ap + per_cell * xp) >> 16);
+    let variance = 1 + (4 * rest.max(0)).checked_div(s.n * s.n)?.min(1 << 20);
     let lean = per_cell.checked_div(cells.cell_width)?;
     let right = (16 * cells.cell_width * s.x).checked_div(s.n)? + cells.right_16ths(0);
     // Parallaxes of the plane were rounded down.
     let mean = (s.p << 16).checked_div(s.n)? - 0x8000;
-    let level = mean - (per_half * s.a).checked_div(s.n)? - ((lean * right) >> 4);
-    Ground::from_line(plane.level + level, plane.slope + 2 * per_half, i64::from(plane.lean) + lean, 1, rig)
+    let level = plane.level + mean - (per_half * s.a).checked_div(s.n)? - ((lean * right) >> 4);
+    let (slope, lean) = (plane.slope + 2 * per_half, i64::from(plane.lean) + lean);
+    let fitted = Ground::from_line(level, slope, lean, variance as u32, rig)?;
+    Some((fitted.bounded(source, s.a.checked_div(s.n)?, rig)?, s.last_row - s.first_row?))
 }
 
 /// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted by
 /// least squares in bands that get narrower, down to half a px to each side, as long as at least 8 cells and
 /// a sixteenth of those with an answer are within, with their neighbours above and below.
-///
 /// It is refused if 2 px are too narrow for that, or if these cells reach over less than an eighth of the
-/// rows. Its variance is four times that of the mean: cells
-/// side by side share windows.
+/// rows.
 pub(super) fn fit(
     cells: &Cells<'_>,
     bins: &[u8],
@@ -271,14 +274,15 @@ pub(super) fn fit(
     let drawn = |line: Ground| Drawn { level: line.level, slope: line.slope };
     let lean = carried.map_or(0, |ground| i64::from(ground.lean));
     let mut best = carried.map(|line| (score(cells, bins, shift, drawn(line)), line));
-    let mut state = 0x9e37_79b9;
+    let (mut state, lowest) = (0x9e37_79b9, cells.halves(cells.rows.saturating_sub(1)));
     for _ in 0..DRAWS {
         let pair = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
         let Some(line) = through(cells, pair, carried.as_ref()) else { continue };
         let score = score(cells, bins, shift, line);
         if best.is_none_or(|(most, _)| score > most) {
             // The plane behind a line takes divisions: of the few that are better alone.
-            let plane = Ground::from_line(line.level, line.slope, lean, 1, rig);
+            let plane = Ground::from_line(line.level, line.slope, lean, 1, rig)
+                .and_then(|plane| plane.bounded(source, lowest, rig));
             best = plane.filter(|plane| plane.is_within(source)).map(|plane| (score, plane)).or(best);
         }
     }
@@ -287,14 +291,9 @@ pub(super) fn fit(
     let fewest = (answered / 16).max(8);
     let mut within = None;
     for band in bands(shift) {
-        let Some(fitted) = refined(cells, &plane, band, fewest, source, rig) else { break };
-        (plane, within) = (fitted, Some(band));
+        let Some((fitted, reach)) = refined(cells, &plane, band, fewest, source, rig) else { break };
+        (plane, within) = (fitted, Some((band, reach)));
     }
-    let s = sums(cells, &plane, within.filter(|&band| band <= WIDEST)?);
-    let reach = s.last_row - s.first_row?;
-    if s.n < fewest || reach < cells.span() || !plane.is_within(source) {
-        return None;
-    }
-    let variance = 1 + (4 * s.pp).checked_div(s.n * s.n)?;
-    Some(Ground { variance: variance.min(1 << 20) as u32, ..plane })
+    let (band, reach) = within?;
+    (band <= WIDEST && reach >= cells.span() && plane.is_within(source)).then_some(plane)
 }

@@ -229,8 +229,15 @@ fn bad_cameras_are_blind() {
     let given =
         decided(&left, &right, &["--camera-height", "0.3", "--camera-pitch", "8.6", "--speed", "1.3"]);
     assert_eq!(given["decision"], "stop", "{given}");
-    let ground = &json(&bench.path("out/obstacles.json"))["ground"];
-    assert!((ground["height_m"].as_f64().expect("a height") - 0.3).abs() < 1e-6, "{ground}");
+    let ground = || json(&bench.path("out/obstacles.json"))["ground"].clone();
+    let number = |ground: &Value, name: &str| ground[name].as_f64().expect("a number");
+    assert!((number(&ground(), "height_m") - 0.3).abs() < 1e-6, "{}", ground());
+    // The height alone, with which the pitch is searched.
+    let known = decided(&left, &right, &["--camera-height", "0.31", "--speed", "1.3"]);
+    assert_eq!(known["decision"], "stop", "{known}");
+    let ground = ground();
+    assert!((number(&ground, "height_m") - 0.31).abs() < 1e-6, "{ground}");
+    assert!((number(&ground, "pitch_deg") - 8.6).abs() < 1.0, "{ground}");
 }
 
 #[test]
@@ -241,7 +248,8 @@ fn options_of_obstacles_that_do_not_fit_are_named() {
     bench.refused(&with(&["--obstacles", "--speed", "66"]), "a speed from 0 to 65 is needed");
     bench.refused(&with(&["--obstacles", "--corridor", "-1"]), "a length from 0.01 to 65 is needed");
     bench.refused(&with(&["--obstacles", "--least-height", "0"]), "a length from 0.01 to 65 is needed");
-    bench.refused(&with(&["--obstacles", "--camera-height", "0.3"]), "--camera-pitch");
+    bench.refused(&with(&["--obstacles", "--camera-pitch", "5"]), "--camera-height");
+    bench.refused(&with(&["--obstacles", "--camera-height", "1", "--camera-roll", "5"]), "--camera-pitch");
     bench.refused(&with(&["--obstacles", "--camera-pitch", "29", "--camera-height", "1"]), "from -28 to 28");
     bench.refused(&with(&["--obstacles", "--settings", "fast,block"]), "cannot be used with");
     put_approach(&bench);

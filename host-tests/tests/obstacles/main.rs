@@ -1,9 +1,11 @@
 //! Obstacles, ground and free space: the core beside its naive twin (`twins`), worked geometry (`geometry`),
-//! rendered scenes (`scenes`) and faulty frames (`faults`).
+//! what counts (`evidence`), rendered scenes (`scenes`) and faulty frames (`faults`).
 
+mod evidence;
 mod faults;
 mod geometry;
 mod scenes;
 mod support;
+mod tally;
 mod truth;
 mod twins;

@@ -83,20 +83,19 @@ pub struct Cameras<M: Method = Block> {
 impl<M: Method> Cameras<M> {
     /// Cameras that see a scene of at most 160 px and 32 disparities, and default limits.
     pub fn new(scene: &Scene) -> Self {
-        Self::surer(scene, 0)
+        Self::of(scene, &ObstacleConfig::default(), false)
     }
 
-    /// Cameras of which answers of at least a confidence count; 0 is all.
-    pub fn surer(scene: &Scene, min_confidence: u8) -> Self {
+    /// Cameras with limits, and with or without confidences.
+    pub fn of(scene: &Scene, limits: &ObstacleConfig, confidence: bool) -> Self {
         let (width, height, disparities) = (scene.width(), scene.height(), scene.disparities());
         let mut pipeline = Box::new(Pipeline::new());
         let config = Config::for_method::<M>(width, height, disparities);
-        pipeline.start(&Config { confidence: min_confidence > 0, ..config }).expect("room for it");
+        pipeline.start(&Config { confidence, ..config }).expect("room for it");
         let mut finder = Box::new(Finder::new());
         let scale = DepthScale::new(&scene.rig()).expect("a scale");
         let largest = Disparity::from_pixels(disparities);
-        let limits = ObstacleConfig { min_confidence, ..ObstacleConfig::default() };
-        finder.start(&limits, &scale, [width, height], largest).expect("room for it");
+        finder.start(limits, &scale, [width, height], largest).expect("room for it");
         Self { pipeline, finder, monitor: PairMonitor::new(disparities) }
     }
 

@@ -184,7 +184,8 @@ proptest! {
         offset in prop_oneof![Just(0.0f32), -3.0f32..3.0],
         sigma_steps in 1u16..12,
         limits in (10u16..200, 10u16..200, 1u16..400),
-        min_confidence in 0u8..200,
+        confidences in (0u8..200, 0u8..250),
+        heights_mm in prop_oneof![Just([100u16, 3000]), (150u16..1200).prop_map(|h| [h, h + h / 50])],
         absent in prop::bool::weighted(0.2),
         headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
         sectors in 1u8..33,
@@ -194,12 +195,19 @@ proptest! {
         let (cx, cy) = (f32::from(width) / 2.0 - 0.5, f32::from(height) / 2.0 - 0.5);
         let rig = RectifiedRig::with_offset(0.8 * f32::from(width), 0.1, cx, cy, cx + offset).expect("a rig");
         let default = ObstacleConfig::default();
+        let searched_ground = GroundSource::Searched {
+            least_height_mm: heights_mm[0],
+            most_height_mm: heights_mm[1],
+            most_pitch: 500,
+            most_roll: 120,
+        };
         let config = ObstacleConfig {
             cell_width: cell.0,
             cell_height: cell.1,
             sigma_steps,
-            min_confidence,
-            ground: if absent { GroundSource::Absent } else { default.ground },
+            min_confidence: confidences.0,
+            sky_confidence: confidences.1,
+            ground: if absent { GroundSource::Absent } else { searched_ground },
             obstacle_mm: limits.0,
             drop_mm: limits.1,
             min_pixels: limits.2,

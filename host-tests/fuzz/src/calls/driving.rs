@@ -31,6 +31,7 @@ fn config(u: &mut Unstructured<'_>, a: &mut Arena) -> Result<*mut CObstacleConfi
             (u.arbitrary()?, u.arbitrary()?, u.arbitrary()?);
         (config.sectors, config.least_answered) = (u.int_in_range(0..=33)?, u.arbitrary()?);
         (config.most_lost, config.min_confidence) = (u.arbitrary()?, u.arbitrary()?);
+        config.sky_confidence = u.arbitrary()?;
     }
     a.values(u, &[config])
 }

@@ -21,6 +21,8 @@ pub enum RobotScene {
     WhiteWall,
     /// The corridor, with a box of 20 x 20 cm whose front is at this distance along the ground, mm.
     BoxAt(u16),
+    /// The corridor, with a pole of 2 cm at this distance along the ground and to the right, mm.
+    PoleAt(u16, i16),
 }
 
 impl RobotScene {
@@ -55,6 +57,7 @@ impl RobotScene {
             Texture::new(seed.wrapping_mul(31) + n, brightness, 0.4).with_octaves(0.2, 6)
         };
         let cuboid = |size: [f64; 3]| Shape::Cuboid { half: Vector3::from(size) / 2.0 };
+        let pole = Shape::Cylinder { radius: 0.01, half_height: 0.5 };
         let walls = |scene: Scene| {
             scene
                 .with(put(cuboid([0.2, 4.0, 20.0]), rough(1, 0.45), [-1.6, 2.0, 5.0]))
@@ -76,13 +79,14 @@ impl RobotScene {
             Self::Table => {
                 walls(empty).with(put(cuboid([2.0, 0.04, 1.5]), rough(4, 0.6), [0.0, -0.02, 0.15]))
             }
-            Self::Poles => {
-                let pole = Shape::Cylinder { radius: 0.01, half_height: 0.5 };
-                walls(empty).with(put(pole.clone(), rough(5, 0.8), [0.02, 0.5, 0.6])).with(put(
-                    pole,
-                    rough(6, 0.2),
-                    [-0.15, 0.5, 0.8],
-                ))
+            Self::Poles => walls(empty).with(put(pole.clone(), rough(5, 0.8), [0.02, 0.5, 0.6])).with(put(
+                pole,
+                rough(6, 0.2),
+                [-0.15, 0.5, 0.8],
+            )),
+            Self::PoleAt(mm, right_mm) => {
+                let [z, x] = [f64::from(mm), f64::from(right_mm)].map(|mm| mm / 1000.0);
+                walls(empty).with(put(pole, rough(9, 0.2 * f64::from(1 + seed % 4)), [x, 0.5, z]))
             }
             Self::WhiteWall => {
                 walls(empty).with(put(cuboid([2.9, 4.0, 0.1]), Texture::flat(0.9), [0.0, 2.0, 0.85]))

@@ -33,17 +33,15 @@ pub struct ObstacleArgs {
     /// Least height of an obstacle and least depth of a drop, m: 0.05 where none is given
     #[arg(long, value_name = "M", requires = "obstacles", value_parser = long, allow_negative_numbers = true)]
     pub least_height: Option<u16>,
-    /// Height of the cameras above the ground, m, as an inertial sensor and a ruler tell; searched where none
-    /// is given
-    #[arg(long, value_name = "M", requires_all = ["obstacles", "camera_pitch"], value_parser = long,
-        allow_negative_numbers = true)]
+    /// Height of the cameras above the ground, m, as a ruler tells; searched where none is given
+    #[arg(long, value_name = "M", requires = "obstacles", value_parser = long, allow_negative_numbers = true)]
     pub camera_height: Option<u16>,
-    /// Pitch of the cameras, degrees downward
+    /// Pitch of the cameras, degrees downward, as an inertial sensor tells; searched where none is given
     #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_height"], value_parser = angle,
         allow_negative_numbers = true)]
     pub camera_pitch: Option<i16>,
     /// Roll of the cameras, degrees by which their right side is lower: 0 where none is given
-    #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_height"], value_parser = angle,
+    #[arg(long, value_name = "DEGREES", requires_all = ["obstacles", "camera_pitch"], value_parser = angle,
         allow_negative_numbers = true)]
     pub camera_roll: Option<i16>,
 }
@@ -82,15 +80,22 @@ impl ObstacleArgs {
         let default = Vehicle::default();
         let drive =
             DriveConfig { corridor_mm: self.corridor.unwrap_or(default.drive.corridor_mm), ..default.drive };
-        let given = self.camera_height.zip(self.camera_pitch);
         let roll_mrad = self.camera_roll.unwrap_or(0);
-        let ground =
-            given.map(|(height_mm, pitch_mrad)| GroundSource::Given { pitch_mrad, roll_mrad, height_mm });
+        let ground = match (self.camera_height, self.camera_pitch, default.ground) {
+            (Some(height_mm), Some(pitch_mrad), _) => {
+                GroundSource::Given { pitch_mrad, roll_mrad, height_mm }
+            }
+            (Some(height_mm), None, GroundSource::Searched { most_pitch, most_roll, .. }) => {
+                let [least_height_mm, most_height_mm] = [height_mm; 2];
+                GroundSource::Searched { least_height_mm, most_height_mm, most_pitch, most_roll }
+            }
+            (_, _, ground) => ground,
+        };
         let vehicle = Vehicle {
             drive,
             speed_mm_s: self.speed.unwrap_or(default.speed_mm_s),
             least_mm: self.least_height.unwrap_or(default.least_mm),
-            ground: ground.unwrap_or(default.ground),
+            ground,
         };
         let watch = || Watch { watch: ObstacleWatch::new(vehicle), timeline: Timeline::default() };
         self.obstacles.then(watch)

@@ -25,6 +25,11 @@ impl Line {
         in_256ths >> 8
     }
 
+    /// Parallax at a row, steps in 65536ths.
+    pub fn exact(&self, y: i128, right: i128) -> i128 {
+        self.level + self.slope * y + ((self.lean * right) >> 4)
+    }
+
     /// Parallax in the column of the principal point.
     pub fn upright(&self, halves: i128) -> i128 {
         self.at(halves, 0)
@@ -39,6 +44,25 @@ impl Line {
         let norm = ((slope * slope + lean * lean + inclination * inclination) as u128).isqrt() as i128;
         let height_mm = scene.baseline_16ths * 131_072 / norm;
         (height_mm <= 65_535).then_some(Self { level, slope, lean, variance, height_mm })
+    }
+
+    /// The plane with the nearest height that is searched, and the same parallax at a half-row; none is given
+    /// for one that is more than an eighth off.
+    fn bounded(self, scene: &Scene<'_>, halves: i128) -> Option<Self> {
+        let GroundSource::Searched { least_height_mm, most_height_mm, .. } = scene.config.ground else {
+            return Some(self);
+        };
+        let height_mm = self.height_mm.clamp(least_height_mm.into(), most_height_mm.into());
+        let mut plane = self;
+        for _ in 0..4 {
+            if plane.height_mm != height_mm {
+                let slope = plane.slope * plane.height_mm / height_mm;
+                let level = plane.level + (plane.slope - slope) * halves / 2;
+                plane = Self::new(scene, [level, slope, plane.lean], plane.variance)?;
+            }
+        }
+        let is_near = 8 * (self.height_mm - height_mm).abs() <= height_mm;
+        is_near.then_some(Self { height_mm, ..plane })
     }
 
     fn is_allowed(&self, scene: &Scene<'_>) -> bool {
@@ -115,8 +139,14 @@ fn near(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128) -> V
 }
 
 /// Least squares of what the cells near a plane have more than it: first columns and parallaxes less what
-/// goes with the row, then the row's part.
-fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128, fewest: i128) -> Option<Line> {
+/// goes with the row, then the row's part. With the plane comes the number of rows that they reach over.
+fn refined(
+    scene: &Scene<'_>,
+    cells: &[Option<i128>],
+    line: &Line,
+    band: i128,
+    fewest: i128,
+) -> Option<(Line, usize)> {
     let near = near(scene, cells, line, band);
     let n = near.len() as i128;
     if n < fewest {
@@ -131,6 +161,7 @@ fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128, f
     let ap = sum(&|cell| row(cell) * cell.off) - a * p / n;
     let xx = sum(&|cell| column(cell) * column(cell)) - x * x / n;
     let xp = sum(&|cell| column(cell) * cell.off) - x * p / n;
+    let pp = sum(&|cell| cell.off * cell.off) - p * p / n;
     if aa == 0 {
         return None;
     }
@@ -145,7 +176,12 @@ fn refined(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line, band: i128, f
     let right = 16 * width * x / n + scene.right(0);
     // The plane's parallaxes were rounded down.
     let level = p * 65_536 / n - 32_768 - per_half * a / n - ((lean * right) >> 4);
-    Line::new(scene, [line.level + level, line.slope + 2 * per_half, line.lean + lean], 1)
+    // What the fit leaves of the squares.
+    let rest = (pp - ((per_half * ap + per_cell * xp) >> 16)).max(0);
+    let variance = 1 + (4 * rest / (n * n)).min(1 << 20);
+    let fitted =
+        Line::new(scene, [line.level + level, line.slope + 2 * per_half, line.lean + lean], variance)?;
+    Some((fitted.bounded(scene, a / n)?, near.last()?.row - near.first()?.row))
 }
 
 /// The line through two cells at least an eighth of the rows, and two, apart, which leans as a carried one.
@@ -187,12 +223,11 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
     };
     for _ in 0..64 {
         let drawn = [draw(), draw()];
-        let Some(line) = through(scene, cells, drawn, carried).filter(|line| line.is_allowed(scene)) else {
-            continue;
-        };
+        let Some(line) = through(scene, cells, drawn, carried) else { continue };
         let score = score(scene, cells, &line);
+        let bounded = line.bounded(scene, scene.halves(rows - 1)).filter(|line| line.is_allowed(scene));
         if best.is_none_or(|(most, _)| score > most) {
-            best = Some((score, line));
+            best = bounded.map(|line| (score, line)).or(best);
         }
     }
     let line = best?.1;
@@ -202,17 +237,12 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
     let answered = cells.iter().flatten().count() as i128;
     let fewest = (answered / 16).max(8);
     while band >= 16 {
-        let Some(fitted) = refined(scene, cells, &line, band, fewest) else { break };
-        (line, within) = (fitted, Some(band));
+        let Some((fitted, reach)) = refined(scene, cells, &line, band, fewest) else { break };
+        (line, within) = (fitted, Some((band, reach)));
         band /= 2;
     }
-    let inliers = near(scene, cells, &line, within.filter(|band| *band <= 64)?);
-    let reach = inliers.last()?.row - inliers.first()?.row;
-    let n = inliers.len() as i128;
-    let enough = n >= fewest && reach >= (rows / 8).max(2);
-    let squares: i128 = inliers.iter().map(|cell| cell.off.pow(2)).sum();
-    let variance = (1 + 4 * squares / (n * n)).min(1 << 20);
-    (enough && line.is_allowed(scene)).then_some(Line { variance, ..line })
+    let (band, reach) = within?;
+    (band <= 64 && reach >= (rows / 8).max(2) && line.is_allowed(scene)).then_some(line)
 }
 
 /// Averages what a frame measured into what was carried.

@@ -3,12 +3,13 @@
 //!
 //! * [`Scene`]: a map, its rig and its limits. [`find`]: what is in it.
 //! * `ground`: the line of the ground by counting cells and by least squares. `stixels`: the cheapest labels
-//!   of a column by trying all predecessors, and surfaces by flooding. `sectors`: the nearest of each by
-//!   looking at all columns.
+//!   of a column by trying all predecessors. `surfaces`: those of columns by flooding. `sectors`: the nearest
+//!   of each by looking at all columns.
 
 mod ground;
 mod sectors;
 mod stixels;
+mod surfaces;
 
 pub use ground::Line;
 pub use sectors::{Sector, sectors};
@@ -83,23 +84,36 @@ impl Scene<'_> {
         16 * width * column as i128 + 8 * (width - 1) - self.cx_16ths
     }
 
+    /// Whether no column sees the ground in a row of pixels; without a known one, whether the row is in the
+    /// upper half of those above the principal point.
+    fn is_sky(&self, y: usize, ground: Option<Line>) -> bool {
+        let ends = [0, self.size()[0] - 1].map(|column| self.right(column));
+        match (self.config.ground, ground) {
+            (GroundSource::Absent, _) => false,
+            (_, Some(line)) => ends.iter().all(|right| line.exact(y as i128, *right) < 0),
+            (_, None) => (y as i128) < self.cy_halves.div_euclid(4),
+        }
+    }
+
     /// The answers in every third column of a cell, in the order in which they come.
-    fn answers(&self, column: usize, row: usize) -> Vec<i128> {
+    fn answers(&self, column: usize, row: usize, ground: Option<Line>) -> Vec<i128> {
         let (w, h) = (usize::from(self.config.cell_width), usize::from(self.config.cell_height));
         let pixels = (0..h).flat_map(|y| (0..w).step_by(3).map(move |x| (x, y)));
         let pixels = pixels.map(|(x, y)| (row * h + y) * self.width + column * w + x);
         let counts = |&i: &usize| {
             let doubtful = PixelFlags::FILLED.union(PixelFlags::DAMAGED);
-            let sure = self.confidences.is_empty() || self.confidences[i] >= self.config.min_confidence;
+            let sky = if self.is_sky(i / self.width, ground) { self.config.sky_confidence } else { 0 };
+            let least = self.config.min_confidence.max(sky);
+            let sure = self.confidences.is_empty() || self.confidences[i] >= least;
             self.disparities[i].is_some() && !self.flags[i].intersects(doubtful) && sure
         };
         pixels.filter(counts).map(|i| i128::from(self.disparities[i].raw())).collect()
     }
 
     /// The nearer of the two groups of a cell, of those with a quarter of its pixels.
-    fn cell(&self, column: usize, row: usize) -> Option<i128> {
+    fn cell(&self, column: usize, row: usize, ground: Option<Line>) -> Option<i128> {
         let mut groups: [Vec<i128>; 2] = [Vec::new(), Vec::new()];
-        for d in self.answers(column, row) {
+        for d in self.answers(column, row, ground) {
             let joins = |group: &Vec<i128>| group.last().is_none_or(|last| (d - last).abs() <= 32);
             if let Some(group) = groups.iter_mut().find(|group| joins(group)) {
                 group.push(d);
@@ -123,7 +137,7 @@ pub fn find(scene: &Scene<'_>, carried: &mut (Option<Line>, u32)) -> Found {
     let [columns, rows] = scene.size();
     let cells: Vec<_> = (0..rows)
         .flat_map(|row| (0..columns).map(move |column| (column, row)))
-        .map(|(column, row)| scene.cell(column, row))
+        .map(|(column, row)| scene.cell(column, row, carried.0))
         .collect();
     let ground = match scene.config.ground {
         GroundSource::Absent => None,
@@ -133,6 +147,6 @@ pub fn find(scene: &Scene<'_>, carried: &mut (Option<Line>, u32)) -> Found {
             carried.0
         }
     };
-    let columns = stixels::stixels(scene, &cells, ground);
+    let columns = surfaces::stixels(scene, &cells, ground);
     Found { cells, ground, columns }
 }

@@ -1,7 +1,6 @@
-//! The cheapest labels of a column by trying all predecessors, and surfaces by flooding.
+//! The cheapest labels of a column by trying all predecessors.
 
 use super::{Line, Scene};
-use std::ops::RangeInclusive;
 use stereopsis::obstacles::GroundSource;
 
 /// What a cell is.
@@ -47,13 +46,13 @@ pub struct Segment {
     pub cells: usize,
 }
 
-struct Column<'a> {
-    scene: &'a Scene<'a>,
-    ground: Option<Line>,
+pub(super) struct Column<'a> {
+    pub(super) scene: &'a Scene<'a>,
+    pub(super) ground: Option<Line>,
     /// Parallaxes from the uppermost row down.
-    parallaxes: Vec<Option<i128>>,
+    pub(super) parallaxes: Vec<Option<i128>>,
     /// How far it is to the right of the principal point, sixteenths of a px.
-    right: i128,
+    pub(super) right: i128,
 }
 
 impl Column<'_> {
@@ -62,21 +61,35 @@ impl Column<'_> {
         3 * (sigma * sigma + self.ground.map_or(0, |line| line.variance)).isqrt()
     }
 
-    fn same_surface(&self) -> i128 {
+    pub(super) fn same_surface(&self) -> i128 {
         (self.tolerance() * 3 / 2).max(32)
+    }
+
+    /// What the parallax of an obstacle's upper edge has more than the ground's at a row.
+    fn rise(&self, line: &Line, row: usize) -> i128 {
+        let (at, up) =
+            (line.upright(self.scene.halves(row)).max(0), i128::from(self.scene.config.obstacle_mm));
+        let left = line.height_mm - up;
+        if left > 0 { (at * up / left).min(1 << 21).max(self.tolerance()) } else { 1 << 21 }
     }
 
     /// The most that the ground's parallax is at a row.
     fn highest(&self, line: &Line, row: usize) -> i128 {
-        let halves = self.scene.halves(row);
-        let (at, up) = (line.upright(halves).max(0), i128::from(self.scene.config.obstacle_mm));
-        let left = line.height_mm - up;
-        let rise = if left > 0 { (at * up / left).max(self.tolerance()) } else { 1 << 21 };
-        (line.at(halves, self.right) + rise).max(self.scene.farthest() - 1)
+        let ground = line.at(self.scene.halves(row), self.right);
+        (ground + self.rise(line, row)).max(self.scene.farthest() - 1)
+    }
+
+    /// Whether a row's answer is within three eighths of an obstacle's height of the ground.
+    fn is_close(&self, row: usize) -> bool {
+        let close = |line: Line| {
+            let off = self.parallaxes[row]? - line.at(self.scene.halves(row), self.right);
+            Some(off.abs() <= (3 * self.rise(&line, row) / 8).max(self.tolerance()))
+        };
+        self.ground.and_then(close).unwrap_or(false)
     }
 
     /// Whether a near obstacle is the ground two rows below its base, or at the lowest row.
-    fn touches(&self, segment: &Segment) -> bool {
+    pub(super) fn touches(&self, segment: &Segment) -> bool {
         let row = (segment.base + 2).min(self.parallaxes.len() - 1);
         let on = |line: Line| segment.parallax <= self.highest(&line, row);
         let is_near = segment.parallax >= 2 * self.scene.farthest();
@@ -84,7 +97,7 @@ impl Column<'_> {
     }
 
     /// Whether it has two windows of 9 px and touches the ground.
-    fn stands(&self, segment: &Segment) -> bool {
+    pub(super) fn stands(&self, segment: &Segment) -> bool {
         segment.cells * usize::from(self.scene.config.cell_height) >= 2 * 9 && self.touches(segment)
     }
 
@@ -131,7 +144,7 @@ impl Column<'_> {
     }
 
     /// The cheapest kinds from the lowest row up; of equals the one that stays, then the first.
-    fn labels(&self) -> Vec<Kind> {
+    pub(super) fn labels(&self) -> Vec<Kind> {
         let rows = self.parallaxes.len();
         // The cheapest way to each kind at the row below, with the kinds on it from the lowest row on.
         let mut ways: Vec<(i128, Vec<Kind>)> = vec![(0, Vec::new()); 4];
@@ -154,7 +167,7 @@ impl Column<'_> {
     }
 
     /// Rows from one end of a segment to the other.
-    fn segments(&self, labels: &[Kind]) -> Vec<Segment> {
+    pub(super) fn segments(&self, labels: &[Kind]) -> Vec<Segment> {
         let rows = labels.len();
         let mut found = Vec::new();
         let mut top = 0;
@@ -186,7 +199,7 @@ impl Column<'_> {
     }
 
     /// A segment with all cells of obstacles that are of its surface, where they reach down to the ground.
-    fn whole(&self, segment: &Segment, labels: &[Kind]) -> Segment {
+    pub(super) fn whole(&self, segment: &Segment, labels: &[Kind]) -> Segment {
         let mut whole = segment.clone();
         let is_of_it = |row: &usize| {
             let near = |p: i128| (p - segment.parallax).abs() <= self.same_surface();
@@ -202,95 +215,27 @@ impl Column<'_> {
         if self.touches(&whole) { whole } else { segment.clone() }
     }
 
-    fn seen(&self, labels: &[Kind]) -> usize {
+    pub(super) fn seen(&self, labels: &[Kind]) -> usize {
         let rows = labels.len();
         if self.ground.is_none() {
             let answered = self.parallaxes.iter().flatten().count();
             let enough = 100 * answered >= usize::from(self.scene.config.least_answered) * rows;
             return if self.scene.config.ground == GroundSource::Absent && enough { 0 } else { rows };
         }
-        let shows = |row: usize| labels[row] == Kind::Ground && self.parallaxes[row].is_some();
+        let shows = |row: usize| labels[row] == Kind::Ground && self.is_close(row);
         let ends = |row: usize| labels[row] != Kind::Ground && self.parallaxes[row].is_some();
         let mut seen = rows;
-        for row in (0..rows).rev() {
-            // Rows between this one and the last that shows ground.
-            if ends(row) || !shows(row) && seen - row > 2 {
-                break;
-            }
+        for row in (0..rows).rev().take_while(|&row| !ends(row)) {
             if shows(row) {
                 seen = row;
+                continue;
+            }
+            // Rows from this one to the last that shows ground, of which one that is off counts for two.
+            let off = (row..seen).filter(|&row| self.parallaxes[row].is_some()).count();
+            if seen - row + off > 2 {
+                break;
             }
         }
         seen
     }
-}
-
-/// What stands in each column: the nearest segment that belongs to a surface of enough pixels, where a speck
-/// makes room for the next segment behind it twice.
-pub fn stixels(scene: &Scene<'_>, cells: &[Option<i128>], ground: Option<Line>) -> Vec<Standing> {
-    let [columns, rows] = scene.size();
-    let mut seen = Vec::new();
-    let all: Vec<_> = (0..columns)
-        .map(|x| {
-            let parallaxes = (0..rows).map(|y| cells[y * columns + x].map(|d| d + scene.offset)).collect();
-            let column = Column { scene, ground, parallaxes, right: scene.right(x) };
-            let labels = column.labels();
-            let mut segments = column.segments(&labels);
-            segments.retain(|segment| segment.parallax > 0);
-            // Of equals the upper one.
-            segments.sort_by_key(|segment| (-segment.parallax, segment.top));
-            seen.push(column.seen(&labels));
-            let whole = segments.iter().map(|segment| column.whole(segment, &labels));
-            (whole.collect::<Vec<_>>(), column)
-        })
-        .collect();
-    let mut chosen: Vec<Option<Segment>> = all.iter().map(|(found, ..)| found.first().cloned()).collect();
-    let area = usize::from(scene.config.cell_width) * usize::from(scene.config.cell_height);
-    let mut surfaces = vec![0; columns];
-    for tried in 1..=3 {
-        let stands: Vec<_> =
-            (0..columns).map(|x| chosen[x].as_ref().is_some_and(|found| all[x].1.stands(found))).collect();
-        let flood = |x: usize| flooded(&chosen, x, all[x].1.same_surface());
-        let supported = |x: usize| {
-            let cells = |x: usize| chosen[x].as_ref().map_or(0, |found| found.cells);
-            let sum: usize = flood(x).map(cells).sum();
-            let standing: usize = flood(x).filter(|&x| stands[x]).map(cells).sum();
-            let support = sum.max(2 * standing) * area;
-            if support >= usize::from(scene.config.min_pixels) { sum } else { 0 }
-        };
-        surfaces = (0..columns).map(supported).collect();
-        let specks: Vec<_> = (0..columns).filter(|&x| chosen[x].is_some() && surfaces[x] == 0).collect();
-        for x in specks {
-            let Some(speck) = chosen[x].take() else { continue };
-            if all[x].1.touches(&speck) {
-                seen[x] = seen[x].max(speck.base + 1);
-            }
-            let next = all[x].0.iter().find(|segment| segment.parallax < speck.parallax);
-            chosen[x] = next.filter(|_| tried < 3).cloned();
-        }
-    }
-    (0..columns).map(|x| Standing { found: chosen[x].clone(), seen: seen[x], surface: surfaces[x] }).collect()
-}
-
-/// Columns of the surface that column `x` belongs to, by going left and right as long as columns are connected.
-fn flooded(chosen: &[Option<Segment>], x: usize, same_surface: i128) -> RangeInclusive<usize> {
-    let connected = |a: &Option<Segment>, b: &Option<Segment>| match (a, b) {
-        (Some(a), Some(b)) => {
-            let edges_apart = a.base.abs_diff(b.base);
-            a.kind == b.kind
-                && ((a.parallax - b.parallax).abs() <= same_surface
-                    || a.kind == Kind::Drop && edges_apart <= 1)
-                && a.top <= b.base + 1
-                && b.top <= a.base + 1
-        }
-        _ => false,
-    };
-    let (mut first, mut last) = (x, x);
-    while first > 0 && connected(&chosen[first - 1], &chosen[first]) {
-        first -= 1;
-    }
-    while last + 1 < chosen.len() && connected(&chosen[last], &chosen[last + 1]) {
-        last += 1;
-    }
-    first..=last
 }

@@ -1,12 +1,14 @@
 //! Sequences of pictures through the core's odometry.
 //!
 //! * [`sequence`]: the frames of a folder, of one camera or of two.
+//! * `prepared`: what of a frame does not depend on those before it.
 //! * [`run`]: frames in, a [`trajectory`] out, with what is known of every pose.
 //! * [`poses`]: trajectories as KITTI's files have them. [`error`]: how far they are off. [`picture`]: drawn.
 
 pub mod error;
 pub mod picture;
 pub mod poses;
+mod prepared;
 pub mod run;
 pub mod sequence;
 pub mod trajectory;

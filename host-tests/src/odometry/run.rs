@@ -1,9 +1,10 @@
 //! A sequence through the core's odometry.
 
+use super::prepared::Prepared;
 use super::trajectory::Trajectory;
-use crate::correspond::{CorrespondError, Plan, features};
+use crate::correspond::CorrespondError;
 use image::GrayImage;
-use stereopsis::features::Orientation;
+use std::sync::mpsc::{Receiver, sync_channel};
 use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
@@ -49,10 +50,8 @@ pub enum RunError<E: std::error::Error> {
     Thread(std::io::Error),
 }
 
-/// How corners are found: as many as are followed, on the full picture.
-pub fn plan() -> Plan {
-    Plan { corners: 1500, threshold: 8, levels: 1, ..Plan::default() }
-}
+/// Frames that are prepared before they are asked for.
+const AHEAD: usize = 2;
 
 /// How frames are gone through.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -72,7 +71,7 @@ impl Default for RunConfig {
 }
 
 /// Takes frames, left and right, until there is none, and says where the camera stood in each. `told` hears
-/// of every frame.
+/// of every frame. The next frames are read, and their features found, by a thread of their own.
 pub fn run<E, I>(
     rig: &Rig,
     frames: I,
@@ -84,9 +83,16 @@ where
     I: Iterator<Item = Result<(GrayImage, Option<GrayImage>), E>> + Send,
 {
     std::thread::scope(|scope| {
-        let builder = std::thread::Builder::new().stack_size(STACK);
-        let work =
-            builder.spawn_scoped(scope, || follow(rig, frames, config, told)).map_err(RunError::Thread)?;
+        let (sender, receiver) = sync_channel(AHEAD);
+        let read = move || {
+            let prepared = |frame: Result<_, E>| Ok(Prepared::new(frame.map_err(RunError::Source)?)?);
+            // Until the frames end, or nobody waits for one any more.
+            let _ = frames.map(prepared).try_for_each(|frame| sender.send(frame));
+        };
+        let thread = || std::thread::Builder::new().stack_size(STACK);
+        thread().spawn_scoped(scope, read).map_err(RunError::Thread)?;
+        let work = move || follow(rig, receiver, config, told);
+        let work = thread().spawn_scoped(scope, work).map_err(RunError::Thread)?;
         work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
     })
 }
@@ -192,23 +198,19 @@ impl Smoother {
     }
 }
 
-fn follow<E, I>(
+fn follow<E: std::error::Error>(
     rig: &Rig,
-    frames: I,
+    frames: Receiver<Result<Prepared, RunError<E>>>,
     config: RunConfig,
     told: impl Fn(&Step<f64>),
-) -> Result<Trajectory, RunError<E>>
-where
-    E: std::error::Error,
-    I: Iterator<Item = Result<(GrayImage, Option<GrayImage>), E>>,
-{
+) -> Result<Trajectory, RunError<E>> {
     let mut begun: Option<Run> = None;
     let mut first = Vec::new();
     for frame in frames {
-        let frame = frame.map_err(RunError::Source)?;
+        let frame = frame?;
         let run = match &mut begun {
             Some(run) => run,
-            begun @ None => begun.insert(Run::start(rig, config, &frame.0)?),
+            begun @ None => begun.insert(Run::start(rig, config, &frame.left)?),
         };
         let step = run.take(&frame)?;
         told(&step);
@@ -262,7 +264,7 @@ impl Run {
         &mut self,
         rig: &Rig,
         config: RunConfig,
-        frames: impl Iterator<Item = (GrayImage, Option<GrayImage>)>,
+        frames: impl Iterator<Item = Prepared>,
     ) -> Result<(), RunError<E>> {
         self.has_corrected = true;
         if !self.is_corrected() {
@@ -281,12 +283,11 @@ impl Run {
 
     fn take<E: std::error::Error>(
         &mut self,
-        (left, right): &(GrayImage, Option<GrayImage>),
+        Prepared { left, right, corners }: &Prepared,
     ) -> Result<Step<f64>, RunError<E>> {
         let (width, height) = (left.width() as u16, left.height() as u16);
-        let corners = features(&plan(), Orientation::Upright, left)?;
         let right = right.as_ref().map(|right| Picture::new(right.as_raw(), width, height)).transpose()?;
-        let frame = Frame { left: Picture::new(left.as_raw(), width, height)?, right, features: &corners };
+        let frame = Frame { left: Picture::new(left.as_raw(), width, height)?, right, features: corners };
         let step = self.odometry.step(&frame)?;
         self.trajectory.push(step);
         self.trajectory.rigs.extend(self.odometry.rig());

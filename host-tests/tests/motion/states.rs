@@ -44,7 +44,10 @@ fn a_step_that_is_not_sure_is_not_called_tracked() {
         let sigma = (3..6).map(|k| step.covariance[(k, k)]).sum::<f64>().sqrt();
         let text = format!("{}: {:?}, off {off:.3} m, sigma {sigma:.3}", i + first, step.state);
         match step.state {
-            State::Uncertain => unsure += 1,
+            State::Uncertain => {
+                unsure += 1;
+                assert!(off < 3.0 * sigma, "{text}");
+            }
             // Corners in noise of 20 grey levels are off by more than is configured, some by the same amount.
             State::Tracked => assert!(off < 0.3 && off < 6.0 * sigma && sigma < 0.2, "{text}"),
             _ => panic!("{text}"),

@@ -213,6 +213,8 @@ impl<'a, T: Real> OdometryView<'a, T> {
                 // The noise may be more than was configured, and is then all over.
                 let covariance = covariance6(&solved.information) * (residual * residual).max(T::ONE);
                 let motion = self.progress.motion.report(&solved.pose, state);
+                // For who reads it: points with so much doubt would be of no use to the next frame.
+                let doubt = self.progress.motion.doubt(&motion, state);
                 if state == State::Stationary {
                     // The points stay where they are: a motion too small to be seen adds up until it is seen.
                     self.map.used_mut().for_each(|track| track.now = None);
@@ -230,6 +232,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
                         self.calibrate(&now, &motion);
                     }
                 }
+                let covariance = covariance + doubt;
                 Step { motion, covariance, state, points, found, inliers: solved.kept, residual }
             }
         })

@@ -2,6 +2,7 @@
 
 use super::step::State;
 use crate::geometry::{Real, camera::Pose};
+use nalgebra::{Matrix6, Vector6};
 
 /// Frames for which points are kept that are not found again. A pair knows the depths of new points at once:
 /// where it sees enough of them it waits for fewer frames.
@@ -67,6 +68,16 @@ impl<T: Real> MotionModel<T> {
                 motion
             }
         }
+    }
+
+    /// What a motion that is not sure may be off by besides what its observations say: its difference from
+    /// the last sure one, in every direction, as a covariance of turn and step. None of one that is sure.
+    pub fn doubt(&self, motion: &Pose<T>, state: State) -> Matrix6<T> {
+        let Some(sure) = self.sure.filter(|_| state == State::Uncertain) else { return Matrix6::zeros() };
+        let (turn, step) =
+            (sure.inverse().then(motion).angle_rad(), motion.translation() - sure.translation());
+        let (turn, step) = (turn * turn, step.norm_squared());
+        Matrix6::from_diagonal(&Vector6::new(turn, turn, turn, step, step, step))
     }
 
     /// The motion to a pose as far as the state says that it is known, which becomes the reported pose.

@@ -32,6 +32,20 @@ impl Outer {
     }
 }
 
+/// Corners of a board in a picture, and which they are.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen<'a> {
+    pub corners: &'a [Point2<f64>],
+    pub numbers: &'a [usize],
+}
+
+impl<'a> Seen<'a> {
+    /// Places on the board, and where they are in the picture.
+    pub fn pairs(self, board: &'a [Point3<f64>]) -> impl Iterator<Item = (&'a Point3<f64>, &'a Point2<f64>)> {
+        self.numbers.iter().filter_map(|&number| board.get(number)).zip(self.corners)
+    }
+}
+
 /// One camera's corners of each view, or two cameras', with what is to be found.
 #[derive(Clone, Debug)]
 pub(super) struct Bundle<'a> {
@@ -39,8 +53,8 @@ pub(super) struct Bundle<'a> {
     pub board: &'a [Point3<f64>],
     /// What the lenses are.
     pub model: LensModel,
-    /// For each camera the corners of each view.
-    pub seen: Vec<Vec<&'a [Point2<f64>]>>,
+    /// For each camera what it sees of the board in each view.
+    pub seen: Vec<Vec<Seen<'a>>>,
     /// Each camera.
     pub inner: Vec<Inner>,
     /// From the first camera to the second.
@@ -133,7 +147,7 @@ impl Bundle<'_> {
             }
             Some(seen.coords - project(self.model, &self.inner[camera], &point)?.place)
         };
-        self.board.iter().zip(seen).map(residual).collect()
+        seen.pairs(self.board).map(residual).collect()
     }
 
     /// The sum of squares, px^2; endless where a point is behind a camera.
@@ -203,7 +217,7 @@ impl Bundle<'_> {
         let pose = &self.views[view];
         let mut sums = Sums { matrix: [[0.0; MOST]; MOST], vector: [0.0; MOST], cost: 0.0 };
         let mut columns: Vec<Vector2<f64>> = Vec::with_capacity(MOST);
-        for (board, seen) in self.board.iter().zip(self.seen[camera][view]) {
+        for (board, seen) in self.seen[camera][view].pairs(self.board) {
             let turned = pose.r * board.coords;
             let first = turned + pose.t;
             let again = if camera == 0 { first } else { self.beside.r * first };
@@ -274,7 +288,7 @@ impl Bundle<'_> {
     /// The covariance of the cameras' parameters, and of the pose between them, from the residuals.
     pub fn covariance(&self) -> Option<DMatrix<f64>> {
         let normal = self.normal()?;
-        let seen = 2 * self.seen.iter().flatten().map(|corners| corners.len()).sum::<usize>();
+        let seen = 2 * self.seen.iter().flatten().map(|seen| seen.corners.len()).sum::<usize>();
         let free = self.parameters() - self.cameras() * self.free.iter().filter(|free| !**free).count();
         let variance = normal.cost / (seen.checked_sub(free)?.max(1)) as f64;
         // The Schur complement's inverse is that part of the whole inverse.

@@ -1,15 +1,30 @@
 //! A calibrated rig, what its views fit, and why there is none.
 
+use super::board::Board;
 use nalgebra::{Point2, Vector2};
 use std::fmt::Write;
 use stereopsis::geometry::camera::{StereoRig, StereoRigError};
 
-/// The corners of one board in both pictures of a moment, px, in the order of
-/// [`Pattern::places`](super::board::Pattern::places).
+/// The corners of one board in both pictures of a moment, px.
 #[derive(Clone, PartialEq, Debug)]
 pub struct View {
     /// In the left and in the right picture.
     pub corners: [Vec<Point2<f64>>; 2],
+    /// Which of [`Pattern::places`](super::board::Pattern::places) each of them is.
+    pub numbers: [Vec<usize>; 2],
+}
+
+impl View {
+    /// Boards of which all corners are seen, in their order.
+    pub fn whole(corners: [Vec<Point2<f64>>; 2]) -> Self {
+        let numbers = corners.each_ref().map(|corners| (0..corners.len()).collect());
+        Self { corners, numbers }
+    }
+
+    /// What is seen of a board in the left and in the right picture.
+    pub fn new([left, right]: [Board; 2]) -> Self {
+        Self { corners: [left.corners, right.corners], numbers: [left.numbers, right.numbers] }
+    }
 }
 
 /// What is left of a view.

@@ -81,7 +81,7 @@ mod tests {
         let size = ImageSize { width: 80, height: 60 };
         let left = vec![Point2::new(1.0, 1.0), Point2::new(9.0, 9.0), Point2::new(79.5, 59.5)];
         let right = vec![Point2::new(-0.3, 10.0), Point2::new(10.0, 10.0)];
-        let views = [View { corners: [left, right] }];
+        let views = [View::whole([left, right])];
         assert_eq!(coverage(&views, size).map(|c| c.share()), [2.0 / 48.0, 2.0 / 48.0]);
         assert_eq!(coverage(&views, size)[0].corners[0][..2], [2, 0]);
     }

@@ -1,6 +1,6 @@
 //! A chessboard as a camera sees it, and where its corners are: pictures for tests.
 
-use super::board::Pattern;
+use super::board::{Markers, Pattern};
 use crate::scene::Random;
 use image::{GrayImage, Luma};
 use nalgebra::{Point2, Point3, Vector3};
@@ -48,6 +48,18 @@ impl BoardCamera {
 
     /// The picture, with noise of `sigma` grey levels.
     pub fn picture(&self, pattern: Pattern, board: &Pose<f64>, sigma: f64, random: &mut Random) -> GrayImage {
+        self.marked_picture(pattern, None, board, sigma, random)
+    }
+
+    /// The picture of a board with markers in its white squares, if any, with noise of `sigma` grey levels.
+    pub fn marked_picture(
+        &self,
+        pattern: Pattern,
+        markers: Option<&Markers>,
+        board: &Pose<f64>,
+        sigma: f64,
+        random: &mut Random,
+    ) -> GrayImage {
         let columns = usize::from(self.size.width) * SAMPLES;
         let (right, bottom) = (pattern.columns() as f64, pattern.rows() as f64);
         let centre = board.inverse_transform(&Point3::origin());
@@ -62,7 +74,8 @@ impl BoardCamera {
                     && (-margin..bottom - 1.0 + margin).contains(&at.y)
             };
             if is_within(1.0) {
-                if (at.x.floor() + at.y.floor()).rem_euclid(2.0) == 0.0 { BLACK } else { WHITE }
+                let is_white = (at.x.floor() + at.y.floor()).rem_euclid(2.0) != 0.0;
+                if is_white && !markers.is_some_and(|m| is_marked(m, pattern, &at)) { WHITE } else { BLACK }
             } else if is_within(1.0 + MARGIN) {
                 WHITE
             } else {
@@ -78,4 +91,23 @@ impl BoardCamera {
             )
         })
     }
+}
+
+/// Whether a place on the board, in squares from its first corner, is in a black part of a marker.
+fn is_marked(markers: &Markers, pattern: Pattern, at: &Point3<f64>) -> bool {
+    let square = (at.x.floor() as i32 + 1, at.y.floor() as i32 + 1);
+    let Some(number) = markers.number(pattern, square) else { return false };
+    // In bits from the marker's first one, which is of the border.
+    let bits = (markers.dictionary.side() + 2) as f64;
+    let bit = |of: f64| ((of - of.floor() - (1.0 - markers.share) / 2.0) / markers.share * bits).floor();
+    let (column, row) = (bit(at.x), bit(at.y));
+    let is_within = |bit: f64| (0.0..bits).contains(&bit);
+    let is_inner = |bit: f64| (1.0..bits - 1.0).contains(&bit);
+    if !is_within(column) || !is_within(row) {
+        return false;
+    }
+    let is_white = is_inner(column)
+        && is_inner(row)
+        && markers.dictionary.is_white(number, column as usize - 1, row as usize - 1);
+    !is_white
 }

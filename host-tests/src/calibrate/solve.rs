@@ -1,7 +1,7 @@
 //! From corners to a rig.
 
 use super::board::Pattern;
-use super::bundle::{Bundle, Inner, Outer};
+use super::bundle::{Bundle, Inner, Outer, Seen};
 use super::calibrated::{Calibrated, SolveError, View, ViewFigures};
 use super::lens::INNER;
 use super::lens::LensModel;
@@ -14,7 +14,7 @@ use stereopsis::geometry::camera::{Camera, ImageSize, StereoRig, StereoRigError}
 ///
 /// # Panics
 ///
-/// When a view has not the pattern's corners.
+/// When a view has corners that the pattern has not.
 pub fn solve(
     model: LensModel,
     pattern: Pattern,
@@ -23,20 +23,28 @@ pub fn solve(
     views: &[View],
 ) -> Result<Calibrated, SolveError> {
     assert!(
-        views.iter().flat_map(|v| &v.corners).all(|c| c.len() == pattern.corners()),
+        views.iter().flat_map(|view| view.numbers.iter().flatten()).all(|&n| n < pattern.corners()),
         "corners of the pattern"
     );
     if views.len() < Calibrated::LEAST_VIEWS {
         return Err(SolveError::TooFew { views: views.len() });
     }
     let board: Vec<Point3<f64>> = pattern.places().map(|p| Point3::new(p.x, p.y, 0.0)).collect();
-    let seen: [Vec<&[Point2<f64>]>; 2] =
-        [0, 1].map(|i| views.iter().map(|v| v.corners[i].as_slice()).collect());
+    let seen: [Vec<Seen<'_>>; 2] = [0, 1].map(|i| {
+        let of = |view| -> Seen<'_> {
+            let View { corners, numbers }: &View = view;
+            Seen { corners: &corners[i], numbers: &numbers[i] }
+        };
+        views.iter().map(of).collect()
+    });
     let [first, second] = [(0, "left"), (1, "right")]
         .map(|(i, name)| alone(model, &board, &seen[i], size).ok_or(SolveError::Camera(name)));
     let (first, second) = (first?, second?);
-    let rms = |cost: f64, cameras: usize| (cost / (cameras * views.len() * board.len()) as f64).sqrt();
-    let alone_px = [rms(first.cost(), 1), rms(second.cost(), 1)];
+    let rms = |camera: &Bundle<'_>| {
+        let corners: usize = camera.seen.iter().flatten().map(|seen| seen.corners.len()).sum();
+        (camera.cost() / corners as f64).sqrt()
+    };
+    let alone_px = [rms(&first), rms(&second)];
 
     let mut both = Bundle {
         board: &board,
@@ -127,7 +135,7 @@ const NEXT_STEPS: usize = 8;
 fn alone<'a>(
     model: LensModel,
     board: &'a [Point3<f64>],
-    seen: &[&'a [Point2<f64>]],
+    seen: &[Seen<'a>],
     size: ImageSize,
 ) -> Option<Bundle<'a>> {
     let (width, height) = (f64::from(size.width), f64::from(size.height));
@@ -135,8 +143,8 @@ fn alone<'a>(
     let steps = model.steps();
     let free = |parameters: &[usize]| std::array::from_fn(|i| parameters.contains(&i));
     let homographies = |of: &dyn Fn(&Point2<f64>) -> Point2<f64>| {
-        let flat = seen.iter().map(|seen| seen.iter().map(of).collect::<Vec<_>>());
-        flat.map(|flat| start::homography(board, &flat)).collect::<Option<Vec<_>>>()
+        let flat = |seen: &Seen<'a>| start::homography(seen.pairs(board).map(|(board, p)| (board, of(p))));
+        seen.iter().map(flat).collect::<Option<Vec<_>>>()
     };
     let plain = homographies(&|p| *p);
     let zhang = plain.as_ref().and_then(|plain| start::focal_lengths(plain, middle));

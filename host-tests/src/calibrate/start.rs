@@ -5,10 +5,11 @@ use super::lens::INNER;
 use nalgebra::{Matrix2, Matrix3, Point2, Point3, Vector2, Vector3};
 use stereopsis::geometry::two_view::{Correspondence, Homography};
 
-/// The homography from the board's plane to the picture.
-pub(super) fn homography(board: &[Point3<f64>], seen: &[Point2<f64>]) -> Option<Matrix3<f64>> {
-    let pairs: Vec<_> =
-        board.iter().zip(seen).map(|(board, &first)| Correspondence { first, second: board.xy() }).collect();
+/// The homography from the board's plane to the picture, of places on the board and where they are seen.
+pub(super) fn homography<'a>(
+    pairs: impl Iterator<Item = (&'a Point3<f64>, Point2<f64>)>,
+) -> Option<Matrix3<f64>> {
+    let pairs: Vec<_> = pairs.map(|(board, first)| Correspondence { first, second: board.xy() }).collect();
     Homography::from_correspondences(&pairs).ok().map(|h| *h.matrix())
 }
 

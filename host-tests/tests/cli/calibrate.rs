@@ -285,3 +285,16 @@ fn a_calibration_comes_through_a_pipe() {
     let run = piped(b"");
     assert!(!run.status.success() && text(&run.stderr).contains("/dev/stdin"), "{}", text(&run.stderr));
 }
+
+#[test]
+fn markers_are_given_as_the_board_has_them() {
+    let bench = Bench::new();
+    pictures(&bench);
+    for (case, fault) in [
+        (("--marker-mm", "29"), "a marker's side is .4 to .9 of the side of a square, 30 mm here"),
+        (("--pattern", "15x9"), "16 x 10 squares hold 80 markers, and the dictionary has 50"),
+        (("--lens", "brown"), "eight corners and markers that agree"),
+    ] {
+        bench.refused(&arguments(&bench, &[("--markers", "4x4_50"), ("--marker-mm", "22"), case]), fault);
+    }
+}

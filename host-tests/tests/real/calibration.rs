@@ -44,7 +44,7 @@ fn calibrated(folder: &Path, reference: &Value) -> Calibrated {
         let name = name.as_str().expect("a name");
         let left = look(name, None);
         let right = look(&name.replace("left", "right"), Some(&left));
-        View { corners: [left.corners, right.corners] }
+        View::new([left, right])
     });
     let views: Vec<_> = views.collect();
     let square_m = number(&reference["square"]);

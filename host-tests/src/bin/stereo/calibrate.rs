@@ -1,4 +1,4 @@
-//! `stereo calibrate`: pictures of a chessboard into a calibration file.
+//! `stereo calibrate`: pictures of a chessboard, plain or with markers, into a calibration file.
 
 mod boards;
 
@@ -12,7 +12,7 @@ use image::RgbImage;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::rectify::{Crop, Rectification};
-use stereopsis_host::calibrate::board::Pattern;
+use stereopsis_host::calibrate::board::{Dictionary, Markers, Pattern};
 use stereopsis_host::calibrate::coverage::{self, Coverage, coverage};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
 use stereopsis_host::calibration::{warnings, write_opencv};
@@ -28,6 +28,10 @@ pub const EXAMPLE: &str = "Example:
 Ten to thirty pairs, in which the board is tilted and turned each time and reaches all corners of both \
                            images, are enough. Left and right images belong together by the last number in \
                            their names, or, where these have none, by their order.
+
+Of a ChArUco board, whose white squares hold markers, any part with eight corners is enough, so that it may \
+                           reach over the borders of the images: name its markers and their side, as in \
+                           --markers 5x5_100 --marker-mm 18. A board of 10 x 7 squares has the pattern 9x6.
 
 The file is OpenCV's YAML (K1, D1, K2, D2, R, T, E, F) with lengths in metres; match, rectify and calib read \
                            it. The folder of --report gets index.html and a picture of each view's \
@@ -47,6 +51,17 @@ pub struct CalibrateArgs {
     /// The side of a square of the board, millimetres
     #[arg(long, value_name = "MM", value_parser = square, allow_negative_numbers = true)]
     pub square_mm: f64,
+    /// The markers of a ChArUco board, by OpenCV's name of their dictionary: 4x4, 5x5, 6x6 or 7x7, and _50,
+    /// _100, _250 or _1000
+    #[arg(long, value_name = "DICTIONARY", requires = "marker_mm", value_parser = dictionary)]
+    pub markers: Option<Dictionary>,
+    /// The side of a marker with its black border, millimetres
+    #[arg(long, value_name = "MM", requires = "markers", allow_negative_numbers = true)]
+    pub marker_mm: Option<f64>,
+    /// The first square of the ChArUco board is white: OpenCV before 4.6 made boards with an even number of
+    /// rows of squares like that
+    #[arg(long, requires = "markers")]
+    pub begins_white: bool,
     /// What the lenses are
     #[arg(long, value_name = "MODEL", default_value = "brown")]
     pub lens: LensChoice,
@@ -85,6 +100,32 @@ fn pattern(text: &str) -> Result<Pattern, &'static str> {
     found.ok_or("the inner corners along and down are needed, 3 to 64 each, as 9x6")
 }
 
+fn dictionary(text: &str) -> Result<Dictionary, &'static str> {
+    Dictionary::named(text).ok_or("4x4, 5x5, 6x6 or 7x7 with _50, _100, _250 or _1000 is needed, as 5x5_100")
+}
+
+/// The markers of the options.
+fn markers(args: &CalibrateArgs) -> Result<Option<Markers>, Failure> {
+    let (Some(dictionary), Some(mm)) = (&args.markers, args.marker_mm) else { return Ok(None) };
+    let share = mm / args.square_mm;
+    if !(0.4..=0.9).contains(&share) {
+        return Err(Failure::new(format!(
+            "--marker-mm {mm}: a marker's side is .4 to .9 of the side of a square, {} mm here",
+            args.square_mm
+        )));
+    }
+    let (columns, rows) = (args.pattern.columns() + 1, args.pattern.rows() + 1);
+    if dictionary.len() < columns * rows / 2 {
+        return Err(Failure::new(format!(
+            "--markers: {columns} x {rows} squares hold {} markers, and the dictionary has {}; give the one \
+             that the board was made with",
+            columns * rows / 2,
+            dictionary.len()
+        )));
+    }
+    Ok(Some(Markers { dictionary: dictionary.clone(), share, begins_white: args.begins_white }))
+}
+
 fn square(text: &str) -> Result<f64, &'static str> {
     let value: Option<f64> = text.parse().ok();
     match value {
@@ -97,6 +138,7 @@ fn square(text: &str) -> Result<f64, &'static str> {
 }
 
 pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
+    let markers = markers(args)?;
     let place = Place::of("--out", &args.out)?;
     if let Some(folder) = &args.report {
         Staging::probe(folder)?;
@@ -104,7 +146,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let mut notes = Vec::new();
     let pairs = pairs(&args.left, &args.right, &mut notes)?;
     let count = pairs.len();
-    let (size, found) = boards(args.pattern, pairs, &mut notes)?;
+    let (size, found) = boards(args.pattern, markers.as_ref(), pairs, &mut notes)?;
     let views: Vec<View> = found.iter().map(|found| found.view.clone()).collect();
     let failed = |e: &dyn std::fmt::Display| {
         let last = notes.last().map(|note| format!("; {note}")).unwrap_or_default();

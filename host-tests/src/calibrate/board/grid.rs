@@ -78,6 +78,55 @@ impl Grid {
         self.nodes.len()
     }
 
+    /// Takes corners out that are not where those beside them expect them, the worst first: near the border
+    /// of a picture, or of the board, a corner of a marker may stand for one that is not seen.
+    pub fn prune(&mut self) {
+        let worst = |grid: &Self| {
+            let off = grid.nodes.keys().map(|&at| (grid.off(at), at));
+            off.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(off, _)| *off > 0.2)
+        };
+        while let Some((_, at)) = worst(self) {
+            self.nodes.remove(&at);
+        }
+        // Once more, all at a time: one that is wrong would take those beside it along.
+        let off: Vec<_> = self.nodes.keys().copied().filter(|&at| self.off(at) > 0.15).collect();
+        for at in off {
+            self.nodes.remove(&at);
+        }
+    }
+
+    /// How far a corner is from where those beside it expect it, the least of all ways to tell, in steps:
+    /// half way between two, or as far behind two as these are apart.
+    fn off(&self, at: (i32, i32)) -> f64 {
+        let place = |step: (i32, i32), k: i32| {
+            self.nodes.get(&(at.0 + k * step.0, at.1 + k * step.1)).map(|node| node.place)
+        };
+        let Some(here) = place((0, 0), 1) else { return 0.0 };
+        let ways = STEPS.iter().filter_map(|&step| {
+            let (next, before) = (place(step, 1)?, place(step, -1));
+            let (expected, long) = match (before, place(step, 2)) {
+                (Some(before), _) => (next + (before - next) / 2.0, (before - next).norm() / 2.0),
+                (None, Some(second)) => (next + (next - second), (next - second).norm()),
+                (None, None) => return None,
+            };
+            Some((here - expected).norm() / long)
+        });
+        ways.reduce(f64::min).unwrap_or(f64::INFINITY)
+    }
+
+    /// Where its corners are, by column and row.
+    pub fn places(&self) -> impl Iterator<Item = ((i32, i32), Point2<f64>)> {
+        self.nodes.iter().map(|(at, node)| (*at, node.place))
+    }
+
+    /// Its squares with all four corners, by their first one: these clockwise from it.
+    pub fn squares(&self) -> impl Iterator<Item = ((i32, i32), [Point2<f64>; 4])> {
+        self.nodes.keys().filter_map(|&(x, y)| {
+            let at = |i, j| self.nodes.get(&(x + i, y + j)).map(|node| node.place);
+            Some(((x, y), [at(0, 0)?, at(1, 0)?, at(1, 1)?, at(0, 1)?]))
+        })
+    }
+
     /// Puts corners in that links missed: where those beside them expect one, and one is seen.
     pub fn complete(&mut self, level: &Level, corners: &[Corner]) {
         for _ in 0..4 {

@@ -1,7 +1,8 @@
 //! A chessboard's inner corners in a picture.
 //!
-//! In: a grey picture and a [`Pattern`]. Out: the corners in the board's order, to a small part of a pixel,
-//! or [`BoardError`]. In running order, at several sizes of the picture until the board is found at one:
+//! In: a grey picture and a [`Pattern`], and the [`Markers`] in its white squares, if any. Out: the corners
+//! in the board's order, to a small part of a pixel, or [`BoardError`]. In running order, at several sizes
+//! of the picture until the board is found at one:
 //!
 //! * `level`: the picture made smaller or larger, smoothed, with its derivatives.
 //! * `corners`: places where brightness is a saddle, and where two dark and two bright sectors meet.
@@ -9,14 +10,21 @@
 //! * `grid`: corners with whole coordinates, from link to link; gaps filled, and the block that is the
 //!   pattern.
 //! * `order`: which of its corners is the first.
+//! * `markers`: where on the board the grid is, by the markers in it: then a part of the board is enough.
+//!   `dictionary`: what they look like.
 //! * `refine`: the corners again in the picture itself, where all gradients around point across them.
 
 mod corners;
+mod dictionary;
 mod grid;
 mod level;
 mod links;
+mod markers;
 mod order;
 mod refine;
+
+pub use dictionary::{Dictionary, Marker};
+pub use markers::Markers;
 
 use image::GrayImage;
 use nalgebra::Point2;
@@ -67,6 +75,8 @@ impl Pattern {
 pub struct Board {
     /// The corners in the order of [`Pattern::places`], px. The order is right-handed, seen from the camera.
     pub corners: Vec<Point2<f64>>,
+    /// Which of [`Pattern::places`] each of them is, in ascending order: all of a plain chessboard.
+    pub numbers: Vec<usize>,
 }
 
 /// Why there is no board.
@@ -83,6 +93,15 @@ pub enum BoardError {
         most: usize,
         /// Its columns and rows where it is a board, of another size.
         other: Option<(usize, usize)>,
+    },
+    /// No grid whose markers say where on the board it is.
+    #[error(
+        "no part of the board is seen with eight corners and markers that agree; the most corners that \
+        belong together are {most}"
+    )]
+    NoMarkers {
+        /// The largest grid's corners.
+        most: usize,
     },
     /// A grid that holds the pattern in more than one place.
     #[error(
@@ -103,6 +122,7 @@ impl BoardError {
     pub fn other_board(&self) -> Option<(usize, usize)> {
         let (columns, rows) = match *self {
             Self::NotFound { other, .. } => other?,
+            Self::NoMarkers { .. } => return None,
             Self::Larger { columns, rows } => (columns, rows),
         };
         Some((columns.max(rows), columns.min(rows)))
@@ -112,24 +132,57 @@ impl BoardError {
 /// The largest side of a picture that is searched at once, px: more makes the search slow and no surer.
 const LARGEST: u32 = 1100;
 
+/// Finds what is seen of a board with markers: eight corners or more. The markers say which corners they are,
+/// so it does not matter how the board is turned.
+pub fn find_marked(picture: &GrayImage, pattern: Pattern, markers: &Markers) -> Result<Board, BoardError> {
+    let full = level::Level::new(picture, 1.0);
+    let (mut most, mut best) = (0, Vec::new());
+    for scale in scales(picture) {
+        let level = level::Level::new(picture, scale);
+        let corners = corners::find(&level);
+        let links = links::links(&level, &corners, links::Search::MARKED);
+        for mut grid in grid::grids(&corners, &links) {
+            most = most.max(grid.len());
+            grid.prune();
+            let found = markers.locate(pattern, &grid, &level, &full).unwrap_or_default();
+            if found.len() > best.len() {
+                best = found;
+            }
+        }
+        // Another size finds more where much is missing.
+        if 4 * best.len() >= 3 * pattern.corners() {
+            break;
+        }
+    }
+    let (numbers, corners): (Vec<_>, Vec<_>) =
+        refine::refine_marked(&full, pattern, &best).into_iter().unzip();
+    if numbers.len() < markers::FEWEST {
+        return Err(BoardError::NoMarkers { most });
+    }
+    Ok(Board { corners, numbers })
+}
+
+/// The sizes at which a picture is searched, in shares of its own, in order.
+fn scales(picture: &GrayImage) -> impl Iterator<Item = f64> {
+    let side = f64::from(picture.width().max(picture.height()));
+    let mut base = 1.0;
+    while side * base > f64::from(LARGEST) {
+        base /= 2.0;
+    }
+    let scales = [1.0, 0.5, 2.0, 0.25, 0.125].map(|scale| scale * base);
+    let fits =
+        move |scale: &f64| *scale <= 2.0 && side * scale >= 60.0 && side * scale <= 2.0 * f64::from(LARGEST);
+    scales.into_iter().filter(fits)
+}
+
 /// Finds the board. Of a pattern that [is ambiguous](Pattern::is_ambiguous) the first row points to the
 /// right, or as it does in `like`, another camera's picture of the same moment.
 pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Result<Board, BoardError> {
-    let side = picture.width().max(picture.height());
-    let mut base = 1.0;
-    while f64::from(side) * base > f64::from(LARGEST) {
-        base /= 2.0;
-    }
     let (mut most, mut linked, mut other, mut larger) = (0, 0, None, None);
-    for scale in [1.0, 0.5, 2.0, 0.25, 0.125] {
-        let scale = scale * base;
-        if scale > 2.0 || f64::from(side) * scale < 60.0 || f64::from(side) * scale > 2.0 * f64::from(LARGEST)
-        {
-            continue;
-        }
+    for scale in scales(picture) {
         let level = level::Level::new(picture, scale);
         let corners = corners::find(&level);
-        let links = links::links(&level, &corners);
+        let links = links::links(&level, &corners, links::Search::PLAIN);
         for mut grid in grid::grids(&corners, &links) {
             // Of the corners that links join: what is put in later may lie beyond the board.
             if grid.len() > linked {
@@ -153,7 +206,7 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
                         false => refine::refine(&level::Level::new(picture, 1.0), pattern, places),
                     };
                     if let Some(corners) = refined {
-                        return Ok(Board { corners });
+                        return Ok(Board { corners, numbers: (0..pattern.corners()).collect() });
                     }
                 }
                 Err(Some((columns, rows))) => {

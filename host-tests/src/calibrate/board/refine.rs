@@ -4,10 +4,22 @@ use super::Pattern;
 use super::level::Level;
 use nalgebra::{Matrix2, Point2, Vector2};
 
-/// The window's half side, as a share of the way to the nearest corner, the largest that will do; and its
-/// bounds, px.
-const SHARES: [f64; 3] = [0.32, 0.25, 0.2];
-const BOUNDS: (f64, f64) = (2.5, 12.0);
+/// How a corner's window is chosen.
+struct Windows<'a> {
+    /// The half side as a share of the way to the nearest corner, the largest that will do.
+    shares: &'a [f64],
+    /// The least half side, px.
+    least: f64,
+    /// How far a corner may move: a share of that way, and px.
+    move_share: f64,
+    move_px: f64,
+}
+
+const PLAIN: Windows<'_> = Windows { shares: &[0.32, 0.25, 0.2], least: 2.5, move_share: 0.06, move_px: 0.5 };
+/// Where a marker begins a tenth of a square from the corner, on both sides alike.
+const MARKED: Windows<'_> = Windows { shares: &[0.09], least: 2.0, move_share: 0.0, move_px: 0.25 };
+/// The largest half side, px.
+const MOST: f64 = 12.0;
 /// Squares of fewer px are small.
 const SMALL: f64 = 12.0;
 const STEPS: usize = 40;
@@ -16,28 +28,53 @@ const STEPS: usize = 40;
 /// the least `sum w (g . (p - q))^2` over pixels q with gradients g, in a window that reaches to no other
 /// corner. `None` when one goes astray. `level` has the picture's own size.
 pub(super) fn refine(level: &Level, pattern: Pattern, corners: Vec<Point2<f64>>) -> Option<Vec<Point2<f64>>> {
-    let columns = pattern.columns();
-    let refined = corners.iter().enumerate().map(|(i, corner)| {
-        let (x, y) = (i % columns, i / columns);
-        let beside = [
-            (x > 0).then(|| i - 1),
-            (x + 1 < columns).then_some(i + 1),
-            i.checked_sub(columns),
-            (y + 1 < pattern.rows()).then_some(i + columns),
-        ];
-        let ways = beside.into_iter().flatten().map(|j| (corners[j] - corner).norm());
-        let spacing = ways.fold(f64::MAX, f64::min);
-        // What is beside the outermost squares may be nearer than the squares are long.
-        SHARES
-            .iter()
-            .find_map(|share| {
-                let half = (share * spacing).clamp(BOUNDS.0, BOUNDS.1);
-                one(level, corner, half).filter(|found| (found - corner).norm() < 0.06 * spacing + 0.5)
-            })
-            // Small squares that are blurred run into each other: then the saddle is as good as it gets.
-            .or((spacing < SMALL).then_some(*corner))
+    let place = |i: usize| corners.get(i).copied();
+    let refined = (0..corners.len()).map(|i| near(level, &corners[i], spacing(pattern, i, place), &PLAIN));
+    refined.collect()
+}
+
+/// Moves corners of a board with markers alike; those without a saddle, and those whose window the border
+/// cuts off, are left out.
+pub(super) fn refine_marked(
+    level: &Level,
+    pattern: Pattern,
+    corners: &[(usize, Point2<f64>)],
+) -> Vec<(usize, Point2<f64>)> {
+    let place = |i: usize| corners.iter().find(|(number, _)| *number == i).map(|(_, place)| *place);
+    let refined = corners.iter().filter_map(|&(i, corner)| {
+        let spacing = spacing(pattern, i, place);
+        let is_inside = level.is_inside(&corner, (0.1 * spacing).clamp(3.0, MOST));
+        // It may have been found in a smaller picture.
+        let saddle = level.saddle(&corner, 0.1 * spacing + 1.0)?;
+        // The window is small: where it shows too little, the saddle is nearer.
+        Some((i, near(level, &saddle, spacing, &MARKED).unwrap_or(saddle))).filter(|_| is_inside)
     });
     refined.collect()
+}
+
+/// The way from a corner to the nearest one beside it.
+fn spacing(pattern: Pattern, i: usize, place: impl Fn(usize) -> Option<Point2<f64>>) -> f64 {
+    let columns = pattern.columns();
+    let (x, y) = (i % columns, i / columns);
+    let beside = [
+        (x > 0).then(|| i - 1),
+        (x + 1 < columns).then_some(i + 1),
+        i.checked_sub(columns),
+        (y + 1 < pattern.rows()).then_some(i + columns),
+    ];
+    let ways = beside.into_iter().flatten().filter_map(|j| Some((place(j)? - place(i)?).norm()));
+    ways.fold(f64::MAX, f64::min)
+}
+
+fn near(level: &Level, corner: &Point2<f64>, spacing: f64, windows: &Windows<'_>) -> Option<Point2<f64>> {
+    // What is beside the outermost squares may be nearer than the squares are long.
+    let most = windows.move_share * spacing + windows.move_px;
+    let found = windows.shares.iter().find_map(|share| {
+        let half = (share * spacing).clamp(windows.least, MOST);
+        one(level, corner, half).filter(|found| (found - corner).norm() < most)
+    });
+    // Small squares that are blurred run into each other: then the saddle is as good as it gets.
+    found.or((spacing < SMALL).then_some(*corner))
 }
 
 fn one(level: &Level, from: &Point2<f64>, half: f64) -> Option<Point2<f64>> {

@@ -1,9 +1,9 @@
 //! Boards in pictures.
 
-use super::{SIZE, STANDS, pattern, rig, stand};
+use super::{CLOSE_STANDS, SIZE, STANDS, markers, pattern, rig, stand};
 use image::{GrayImage, Luma, imageops};
-use nalgebra::Point2;
-use stereopsis_host::calibrate::board::{Board, BoardError, Pattern, find};
+use nalgebra::{Point2, Point3};
+use stereopsis_host::calibrate::board::{Board, BoardError, Pattern, find, find_marked};
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::scene::Random;
 
@@ -117,4 +117,62 @@ fn an_ambiguous_board_is_reported_alike_in_both_pictures() {
         let first = which(&left, &truth[0]);
         assert!(first.is_some() && first == which(&right, &truth[1]), "{roll}: {first:?}");
     }
+}
+
+/// Boards that reach over the border, in all turns, with markers of all sizes of bits.
+#[test]
+fn parts_of_boards_with_markers_are_found() {
+    let cameras = BoardCamera::pair(&rig());
+    let mut random = Random::new(8);
+    let (mut parts, mut corners, mut visible) = (0, 0, 0);
+    for (name, share) in [("4x4_50", 0.75), ("5x5_100", 0.8), ("dict_6x6_250", 0.8)] {
+        let (pattern, markers) = (pattern(7, 5), markers(name, share));
+        for (axis, place) in CLOSE_STANDS {
+            let stands = stand(pattern, axis, place, 0.03);
+            for (i, (camera, board)) in cameras.iter().zip(&stands).enumerate() {
+                let picture = camera.marked_picture(pattern, Some(&markers), board, 2.0, &mut random);
+                let found = find_marked(&picture, pattern, &markers)
+                    .unwrap_or_else(|e| panic!("{name} {axis:?} {place:?}: {e}"));
+                let places: Vec<_> = pattern.places().collect();
+                let truth = |p: &Point2<f64>| {
+                    let seen = board.transform(&Point3::new(p.x, p.y, 0.0));
+                    rig().cameras()[i].project(&seen).expect("in front")
+                };
+                for (corner, &number) in found.corners.iter().zip(&found.numbers) {
+                    let off = (corner - truth(&places[number])).norm();
+                    assert!(off < 0.5, "{name} {axis:?} {place:?}: {number} is {off} off");
+                }
+                assert!(found.numbers.is_sorted());
+                let inside = |p: &Point2<f64>| (4.0..315.0).contains(&p.x) && (4.0..235.0).contains(&p.y);
+                let seen = places.iter().filter(|p| inside(&truth(p))).count();
+                (corners, visible) = (corners + found.numbers.len(), visible + seen);
+                parts += usize::from(found.numbers.len() < pattern.corners());
+            }
+        }
+    }
+    assert!(parts >= 15 && 10 * corners >= 9 * visible, "{parts} parts, {corners} of {visible} corners");
+}
+
+#[test]
+fn markers_that_do_not_agree_are_no_board() {
+    let camera = BoardCamera::new(rig().cameras()[0], SIZE);
+    let mut random = Random::new(9);
+    let (pattern, own) = (pattern(7, 5), markers("4x4_50", 0.75));
+    let [board, _] = stand(pattern, [0.2, 0.3, 0.1], [0.0, 0.0, 5.0], 0.03);
+    let marked = camera.marked_picture(pattern, Some(&own), &board, 1.0, &mut random);
+    let plain = camera.picture(pattern, &board, 1.0, &mut random);
+    let none = GrayImage::new(320, 240);
+    assert!(find_marked(&marked, pattern, &own).is_ok());
+    for (picture, markers) in [
+        (&marked, markers("5x5_100", 0.75)),
+        (&plain, own.clone()),
+        (&none, own.clone()),
+        (&GrayImage::new(1, 1), own.clone()),
+    ] {
+        let found = find_marked(picture, pattern, &markers);
+        assert!(matches!(found, Err(BoardError::NoMarkers { .. })), "{found:?}");
+    }
+    // The numbers of a board with other squares do not agree either.
+    let other = find_marked(&marked, super::pattern(8, 5), &own);
+    assert!(matches!(other, Err(BoardError::NoMarkers { most: 8.. })), "{other:?}");
 }

@@ -6,7 +6,7 @@ mod rigs;
 
 use nalgebra::{Rotation3, Vector3};
 use stereopsis::geometry::camera::{Camera, Distortion, ImageSize, Pose, StereoRig};
-use stereopsis_host::calibrate::board::Pattern;
+use stereopsis_host::calibrate::board::{Dictionary, Markers, Pattern};
 
 const SIZE: ImageSize = ImageSize { width: 320, height: 240 };
 
@@ -24,6 +24,10 @@ fn rig() -> StereoRig<f64> {
     let right = camera(167.5, 162.4, [-0.27, 0.070, -0.0005, 0.0007, -0.007]);
     let pose = Pose::new(turn([0.012, -0.02, 0.015]), Vector3::new(0.061, 0.0007, -0.0011)).expect("a pose");
     StereoRig::new([left, right], pose, [SIZE; 2]).expect("a rig")
+}
+
+fn markers(name: &str, share: f64) -> Markers {
+    Markers { dictionary: Dictionary::named(name).expect("a dictionary"), share, begins_white: false }
 }
 
 fn turn(axis: [f64; 3]) -> nalgebra::Matrix3<f64> {
@@ -53,4 +57,14 @@ const STANDS: [([f64; 3], [f64; 3]); 10] = [
     ([-0.5, 0.3, 0.5], [-0.5, 0.0, 13.0]),
     ([0.2, 0.6, -0.4], [0.45, 0.0, 12.0]),
     ([0.0, 0.0, 0.0], [0.05, 0.05, 14.0]),
+];
+
+/// Ways to hold a board near the camera, so that it reaches over the borders of the image.
+const CLOSE_STANDS: [([f64; 3], [f64; 3]); 6] = [
+    ([0.3, 0.1, 0.1], [0.05, 0.0, 5.0]),
+    ([-0.3, 0.2, 1.4], [-0.45, -0.3, 5.0]),
+    ([0.1, 0.4, 0.3], [0.5, -0.3, 4.5]),
+    ([0.2, -0.4, -2.6], [-0.45, 0.25, 5.0]),
+    ([-0.2, -0.3, 3.0], [0.45, 0.3, 4.5]),
+    ([0.0, 0.0, -0.6], [0.0, 0.1, 4.0]),
 ];

@@ -1,9 +1,9 @@
 //! Rigs from corners.
 
-use super::{SIZE, STANDS, pattern, rig, stand};
+use super::{CLOSE_STANDS, SIZE, STANDS, markers, pattern, rig, stand};
 use nalgebra::Vector2;
 use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
-use stereopsis_host::calibrate::board::find;
+use stereopsis_host::calibrate::board::{find, find_marked};
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::calibrate::{LensModel, SolveError, View, solve};
 use stereopsis_host::scene::Random;
@@ -22,7 +22,7 @@ fn views(sigma: f64) -> Vec<View> {
             let corners = cameras[i].corners(pattern, &stands[i]).expect("all in the image");
             corners.into_iter().map(|p| p + Vector2::new(off(), off())).collect()
         });
-        View { corners }
+        View::whole(corners)
     };
     STANDS.into_iter().map(view).collect()
 }
@@ -62,7 +62,7 @@ fn other_lenses_come_back_from_exact_corners() {
             let stands = stand(pattern, axis, place, SQUARE_M);
             let corners = [0, 1].map(|i| cameras[i].corners(pattern, &stands[i]));
             let [Some(left), Some(right)] = corners else { return None };
-            Some(View { corners: [left, right] })
+            Some(View::whole([left, right]))
         };
         let views: Vec<_> = STANDS.into_iter().filter_map(view).collect();
         assert!(views.len() >= 8, "{model:?}: {}", views.len());
@@ -136,11 +136,37 @@ fn a_rig_comes_back_from_pictures() {
             let picture = cameras[i].picture(pattern, &stands[i], 1.5, &mut random);
             find(&picture, pattern, None).expect("a board").corners
         });
-        View { corners }
+        View::whole(corners)
     };
     let views: Vec<_> = STANDS.into_iter().map(view).collect();
     let found = solve(LensModel::Brown, pattern, SQUARE_M, SIZE, &views).expect("a rig");
     let (b, truth) = (found.rig.baseline_m(), rig().baseline_m());
     assert!((b / truth - 1.0).abs() < 0.005, "{b} {truth}");
     assert!(found.rms_px < 0.2, "{}", found.rms_px);
+}
+
+/// Parts of boards, other ones in the left and in the right picture, reach all borders.
+#[test]
+fn a_rig_comes_back_from_parts_of_boards() {
+    let (pattern, markers, cameras) = (pattern(7, 5), markers("4x4_50", 0.75), BoardCamera::pair(&rig()));
+    let mut random = Random::new(12);
+    let view = |(axis, place)| {
+        let stands = stand(pattern, axis, place, SQUARE_M);
+        let boards = [0, 1].map(|i| {
+            let picture = cameras[i].marked_picture(pattern, Some(&markers), &stands[i], 1.5, &mut random);
+            find_marked(&picture, pattern, &markers).expect("a part of a board")
+        });
+        View::new(boards)
+    };
+    let views: Vec<_> = CLOSE_STANDS.into_iter().map(view).collect();
+    let differs = views.iter().filter(|view| view.numbers[0] != view.numbers[1]).count();
+    assert!(differs >= 3, "{differs}");
+    let found = solve(LensModel::Brown, pattern, SQUARE_M, SIZE, &views).expect("a rig");
+    let (b, truth) = (found.rig.baseline_m(), rig().baseline_m());
+    assert!((b / truth - 1.0).abs() < 0.005, "{b} {truth}");
+    assert!(found.rms_px < 0.2, "{}", found.rms_px);
+    for (figures, view) in found.views.iter().zip(&views) {
+        let counts = [0, 1].map(|i| (figures.residuals[i].len(), view.corners[i].len()));
+        assert!(counts.iter().all(|(residuals, corners)| residuals == corners), "{counts:?}");
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 use stereopsis::camera::LineSource;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::calibrate::View;
-use stereopsis_host::calibrate::board::{self, Board, BoardError, Pattern};
+use stereopsis_host::calibrate::board::{self, Board, BoardError, Markers, Pattern};
 use stereopsis_host::mock::MockCamera;
 
 /// A pair in which the board was found in both images.
@@ -25,10 +25,11 @@ struct Seen {
 /// The pairs with a board in both images, and the images' size.
 pub fn boards(
     pattern: Pattern,
+    markers: Option<&Markers>,
     pairs: Vec<[PathBuf; 2]>,
     notes: &mut Vec<String>,
 ) -> Result<(ImageSize, Vec<Found>), Failure> {
-    let all = look_at_all(pattern, pairs)?;
+    let all = look_at_all(pattern, markers, pairs)?;
     // The size that most images have.
     let sizes = all.iter().flat_map(|(_, left, right)| [left.size, right.size]);
     let mut counts: Vec<(usize, ImageSize)> = Vec::new();
@@ -55,9 +56,7 @@ pub fn boards(
             continue;
         }
         match (left.board, right.board) {
-            (Ok(left), Ok(right)) => {
-                found.push(Found { paths, view: View { corners: [left.corners, right.corners] } })
-            }
+            (Ok(left), Ok(right)) => found.push(Found { paths, view: View::new([left, right]) }),
             (Err(e), _) => notes.push(format!("{}: {e}; the pair is left out", paths[0].display())),
             (_, Err(e)) => notes.push(format!("{}: {e}; the pair is left out", paths[1].display())),
         }
@@ -68,11 +67,12 @@ pub fn boards(
 /// The boards of all pairs, in their order, by as many threads as there are processors.
 fn look_at_all(
     pattern: Pattern,
+    markers: Option<&Markers>,
     pairs: Vec<[PathBuf; 2]>,
 ) -> Result<Vec<([PathBuf; 2], Seen, Seen)>, Failure> {
     let look_at = |paths: [PathBuf; 2]| {
-        let left = look(&paths[0], pattern, None)?;
-        let right = look(&paths[1], pattern, left.board.as_ref().ok())?;
+        let left = look(&paths[0], pattern, markers, None)?;
+        let right = look(&paths[1], pattern, markers, left.board.as_ref().ok())?;
         Ok((paths, left, right))
     };
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
@@ -127,9 +127,18 @@ fn refuse_other<'a>(
     }
 }
 
-fn look(path: &Path, pattern: Pattern, like: Option<&Board>) -> Result<Seen, Failure> {
+fn look(
+    path: &Path,
+    pattern: Pattern,
+    markers: Option<&Markers>,
+    like: Option<&Board>,
+) -> Result<Seen, Failure> {
     let camera = MockCamera::open(path)?;
     let (width, height) = (camera.format().width, camera.format().height);
     let grey: GrayImage = DynamicImage::from(camera.picture()).into_luma8();
-    Ok(Seen { size: ImageSize { width, height }, board: board::find(&grey, pattern, like) })
+    let board = match markers {
+        Some(markers) => board::find_marked(&grey, pattern, markers),
+        None => board::find(&grey, pattern, like),
+    };
+    Ok(Seen { size: ImageSize { width, height }, board })
 }

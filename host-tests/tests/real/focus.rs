@@ -37,7 +37,11 @@ fn a_coin_is_smooth_and_convex() {
         }
     }
     let share = convex as f64 / all as f64;
-    println!("{share:.3} convex, neighbours at most {roughest} frames apart");
+    let unanswered = index.iter().filter(|i| !i.is_finite()).count();
+    println!(
+        "{share:.3} convex, neighbours at most {roughest} frames apart, {unanswered} of {} unanswered",
+        index.len()
+    );
     assert!(index.iter().all(|i| i.is_finite()));
     assert!(share >= 0.9 && roughest <= 6.0, "{share} {roughest}");
 }

@@ -14,8 +14,6 @@ pub const STEREOPSIS_FOCUS_FEW: u8 = 1;
 pub const STEREOPSIS_FOCUS_UNTEXTURED: u8 = 2;
 /// Focus of a cell: the peak is so broad that noise hides where it is.
 pub const STEREOPSIS_FOCUS_BROAD: u8 = 3;
-/// Focus of a cell: the answers around it are far from each other. No function of C gives it yet.
-pub const STEREOPSIS_FOCUS_DISCONTINUOUS: u8 = 4;
 
 /// Size and cells of a focus map, filled by `stereopsis_focus_default` and then open to changes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -103,7 +101,6 @@ impl From<Result<FocusPeak, NoFocus>> for CFocusPeak {
             Err(NoFocus::TooFewFrames { .. }) => none(STEREOPSIS_FOCUS_FEW),
             Err(NoFocus::Untextured) => none(STEREOPSIS_FOCUS_UNTEXTURED),
             Err(NoFocus::Broad) => none(STEREOPSIS_FOCUS_BROAD),
-            Err(NoFocus::Discontinuous) => none(STEREOPSIS_FOCUS_DISCONTINUOUS),
         }
     }
 }

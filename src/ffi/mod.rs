@@ -126,8 +126,8 @@ pub use focus::{
     focus_row, focus_start,
 };
 pub use focus_types::{
-    CFocusConfig, CFocusPeak, STEREOPSIS_FOCUS_BROAD, STEREOPSIS_FOCUS_DISCONTINUOUS, STEREOPSIS_FOCUS_FEW,
-    STEREOPSIS_FOCUS_FOUND, STEREOPSIS_FOCUS_UNTEXTURED, focus_default,
+    CFocusConfig, CFocusPeak, STEREOPSIS_FOCUS_BROAD, STEREOPSIS_FOCUS_FEW, STEREOPSIS_FOCUS_FOUND,
+    STEREOPSIS_FOCUS_UNTEXTURED, focus_default,
 };
 pub use instance::Instance;
 pub use line_queue::{

@@ -286,11 +286,6 @@
 #define STEREOPSIS_FOCUS_BROAD 3
 
 /**
- * Focus of a cell: the answers around it are far from each other. No function of C gives it yet.
- */
-#define STEREOPSIS_FOCUS_DISCONTINUOUS 4
-
-/**
  * Motion: this is the first frame.
  */
 #define STEREOPSIS_MOTION_FIRST 0

@@ -2,22 +2,16 @@
 
 use super::{FocusPeak, NoFocus};
 
-/// How far answers of one surface are from their median without noise, 1/256 frame.
-const NEAR: u32 = 256;
-
 /// The median of the answers' positions in windows of 5 by 5 cells, a row of cells from the five around it: a
 /// cell whose noise was taken for a peak gets its neighbours' answer. A cell without an answer stays so, and
 /// one keeps its own deviation and confidence. Of an even number of answers the lower one of the middle
-/// counts. Edges stay in place, for a median invents no value between two surfaces. Where fewer than three in
-/// five of the answers are within a frame and three of the cell's deviations of their median, the cell has no
-/// answer ([`NoFocus::Discontinuous`]): beside an edge in depth the blur of what is in front moves the peak
-/// of what is behind it. A surface that recedes by a frame a cell keeps its answers.
+/// counts. Edges stay in place, for a median invents no value between two surfaces.
 ///
 /// The caller repeats the nearest row where there is none; columns outside are left out.
 pub fn median_row(rows: [&[Result<FocusPeak, NoFocus>]; 5], out: &mut [Result<FocusPeak, NoFocus>]) {
     let [_, _, middle, _, _] = rows;
     for (x, (own, out)) in middle.iter().zip(out).enumerate() {
-        *out = own.and_then(|own| {
+        *out = own.map(|own| {
             let mut values = [u32::MAX; 25];
             let mut count = 0;
             for row in rows {
@@ -28,13 +22,8 @@ pub fn median_row(rows: [&[Result<FocusPeak, NoFocus>]; 5], out: &mut [Result<Fo
                 }
             }
             let middle = count.saturating_sub(1) / 2;
-            let (_, &mut median, _) = values.select_nth_unstable(middle);
-            let most = NEAR.saturating_add(own.noise_q8.saturating_mul(3));
-            let near = values.iter().take(count).filter(|value| value.abs_diff(median) <= most).count();
-            if 5 * near < 3 * count {
-                return Err(NoFocus::Discontinuous);
-            }
-            Ok(FocusPeak { position_q8: median, ..own })
+            let (_, median, _) = values.select_nth_unstable(middle);
+            FocusPeak { position_q8: *median, ..own }
         });
     }
 }

@@ -41,7 +41,7 @@ pub fn install(programs: &[&str]) -> Outcome {
     let updated = apt(&["update"]).is_ok();
     let install =
         |packages: &[&str]| apt(&[&["install", "-y", "--no-install-recommends"], packages].concat()).is_ok();
-    // All at once take half the time of one after another. A distribution that lacks one refuses them all.
+    // One call reads the lists of packages once. A distribution that lacks one of them refuses them all.
     let all: Vec<_> = missing
         .iter()
         .flat_map(|&one| packages_with(one).into_iter().take(1).chain(library_of(one)))

@@ -3,6 +3,7 @@
 use crate::support::{camera, stereo};
 use image::GrayImage;
 use std::convert::Infallible;
+use std::sync::LazyLock;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::motion::odometry::RigEstimate;
 use stereopsis_host::odometry::error::drift;
@@ -11,11 +12,12 @@ use stereopsis_host::scene::MovingScene;
 
 const FRAMES: usize = 20;
 
-fn drive() -> (MovingScene, Vec<(GrayImage, GrayImage)>) {
+/// A drive and what its cameras see, which takes longer to draw than to follow.
+static DRIVE: LazyLock<(MovingScene, Vec<(GrayImage, GrayImage)>)> = LazyLock::new(|| {
     let street = MovingScene::street(320, 160, FRAMES, 0.5, 7).with_noise(3.0);
     let frames = (0..FRAMES).map(|i| street.frame(i)).collect();
     (street, frames)
-}
+});
 
 /// The rig as it would be with the right camera's principal point so many columns further right.
 fn off_by(rig: &RectifiedRig, columns: f32) -> RectifiedRig {
@@ -25,10 +27,10 @@ fn off_by(rig: &RectifiedRig, columns: f32) -> RectifiedRig {
 
 #[test]
 fn a_principal_point_that_is_off_is_found_and_corrected() {
-    let (street, frames) = drive();
+    let (street, frames) = &*DRIVE;
     let truth = street.truth();
     let run_of = |columns: f32| {
-        let trajectory = stereo(off_by(&street.rig(), columns), &frames);
+        let trajectory = stereo(off_by(&street.rig(), columns), frames);
         let last = *trajectory.rigs.last().expect("an estimate");
         (drift(&trajectory.poses, &truth, 5.0, 1.0).expect("ways").translation, last)
     };
@@ -46,8 +48,8 @@ fn a_principal_point_that_is_off_is_found_and_corrected() {
 
 #[test]
 fn what_is_not_asked_for_is_reported_and_not_corrected() {
-    let (street, frames) = drive();
-    let frames = frames.into_iter().map(|(left, right)| Ok::<_, Infallible>((left, Some(right))));
+    let (street, frames) = &*DRIVE;
+    let frames = frames.iter().cloned().map(|(left, right)| Ok::<_, Infallible>((left, Some(right))));
     let config = RunConfig { corrects_rig: false, ..RunConfig::default() };
     let trajectory =
         run(&Rig::Stereo(off_by(&street.rig(), 1.0)), frames, config, |_| ()).expect("a trajectory");
@@ -62,7 +64,7 @@ fn what_is_not_asked_for_is_reported_and_not_corrected() {
 #[test]
 fn a_camera_that_is_turned() {
     // Columns of the right camera as one that is turned by 3 mrad to the right sees them.
-    let (street, mut frames) = drive();
+    let (street, mut frames) = DRIVE.clone();
     let (camera, yaw) = (camera(&street.rig()), 0.003_f64);
     let (focal, (cx, _)) = (camera.focal_px().0, camera.principal_point());
     for (_, right) in &mut frames {

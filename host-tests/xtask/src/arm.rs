@@ -1,8 +1,9 @@
 //! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in
 //! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
 
+use crate::kernels;
 use crate::parallel;
-use crate::steps::{Outcome, cargo, run as run_command, target_dir};
+use crate::steps::{Outcome, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
 
@@ -70,7 +71,7 @@ pub fn run() -> Outcome {
 
 /// Cargo with the tests that hold every kernel to the twins.
 fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
-    let mut tests = cargo(&["test", "--locked", "-p", "stereopsis-model", "--test", "kernels"]);
+    let mut tests = kernels::emulated();
     tests.args(arms.iter().flat_map(|arm| ["--target", arm.target])).args(arguments);
     for arm in arms {
         let variable =
@@ -79,8 +80,6 @@ fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
         tests.env(variable("RUNNER"), format!("{} -L {}", arm.emulator, arm.libraries));
         tests.env(variable("RUSTFLAGS"), arm.flags);
     }
-    // The long lists take their share: the host has run all of them.
-    tests.env("STEREOPSIS_EMULATED", "1");
     // Other steps build at the same time.
     tests.env("CARGO_TARGET_DIR", target_dir().join("arm"));
     tests

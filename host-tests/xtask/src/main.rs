@@ -39,6 +39,7 @@ mod firmware;
 mod fuzz;
 mod growth;
 mod header;
+mod kernels;
 mod miri;
 mod mutants;
 mod package;

@@ -30,15 +30,28 @@ pub fn run() -> Outcome {
     builds_unpacked()
 }
 
-/// `cargo xtask publish`: the test step, then licences and known weaknesses of all dependencies, and what the
-/// public interface breaks since the last tag.
+/// `cargo xtask publish`: the test step; the program `stereo` as its users build it, and by the oldest
+/// compiler; then licences and known weaknesses of all dependencies, and what the public interface breaks
+/// since the last tag.
 pub fn publish() -> Outcome {
     let mut steps = Steps::new(None);
     steps.step("package", run)?;
+    steps.step("program", || run_command(&mut cargo(&["build", "--locked", "--release"])))?;
+    steps.step("stated rust-version", || stated_rust_version(&["stereopsis", "stereopsis-host"]))?;
     steps.step("licences, bans and sources", || deny(&["licenses", "bans", "sources"]))?;
     steps.step("advisories", advisories)?;
     steps.step("interface since the last tag", interface)?;
     steps.summary()
+}
+
+/// The oldest compiler that these packages say they build with checks them with features that add code for users.
+pub fn stated_rust_version(packages: &[&str]) -> Outcome {
+    let version = setup::rust_version()?;
+    let mut check = command("rustup", &["run", &version, "cargo", "check", "--locked"]);
+    check.args(packages.iter().flat_map(|package| ["-p", package]));
+    check.args(["--features", "stereopsis/defmt,stereopsis/ffi,stereopsis/serde"]);
+    // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
+    run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
 }
 
 /// The package has what its reader needs and nothing of the repository's own.

@@ -175,20 +175,9 @@ fn readme_commands() -> Outcome {
     run_cargo(&format!("{TEST} --test repo -- --ignored --exact readme::commands_work_in_a_fresh_clone"))
 }
 
-/// The oldest compiler that the packages say they build with, in earnest.
+/// The oldest compiler that the core says it builds with, in earnest.
 fn rust_version() -> Outcome {
-    let version = setup::rust_version()?;
-    let mut check = command("rustup", &["run", &version, "cargo", "check", "--locked"]);
-    check.args([
-        "-p",
-        "stereopsis",
-        "-p",
-        "stereopsis-host",
-        "--features",
-        "stereopsis/defmt,stereopsis/ffi,stereopsis/serde",
-    ]);
-    // Two compilers that take turns in one folder lock each other out and tidy away each other's products.
-    run_command(check.env("CARGO_TARGET_DIR", target_dir().join("rust-version")))
+    package::stated_rust_version(&["stereopsis"])
 }
 
 fn run_cargo(words: &str) -> Outcome {

@@ -35,6 +35,14 @@ struct Rays<'a> {
     objects: &'a [Object],
     from: Point3<f64>,
     local: Vec<(Matrix3<f64>, Point3<f64>)>,
+    balls: Vec<Option<Ball>>,
+}
+
+/// A ball that holds a body, as a ray's origin sees it.
+struct Ball {
+    to_middle: Vector3<f64>,
+    /// The square of the length of a tangent; negative within the ball.
+    tangent_squared: f64,
 }
 
 impl Eye {
@@ -60,7 +68,12 @@ impl Eye {
 impl<'a> Rays<'a> {
     fn new(objects: &'a [Object], from: Point3<f64>) -> Self {
         let local = objects.iter().map(|o| (o.rotation.matrix().transpose(), o.to_local(&from))).collect();
-        Self { objects, from, local }
+        let ball = |object: &Object| {
+            let to_middle = object.position - from;
+            let tangent_squared = to_middle.norm_squared() - object.reach_squared()?;
+            Some(Ball { to_middle, tangent_squared })
+        };
+        Self { objects, from, local, balls: objects.iter().map(ball).collect() }
     }
 
     /// Where the ray along `along` meets the object of this number.
@@ -92,13 +105,11 @@ impl<'a> Rays<'a> {
     fn shaded(&self, point: &Point3<f64>) -> bool {
         let along = point - self.from;
         let length_squared = along.norm_squared();
-        self.objects.iter().enumerate().any(|(i, object)| {
+        self.balls.iter().enumerate().any(|(i, ball)| {
             // Most rays pass the ball around a body by, which is quickly seen.
-            object.reach_squared().is_some_and(|reach_squared| {
-                let to_middle = object.position - self.from;
-                let along_middle = along.dot(&to_middle);
-                let passes =
-                    (to_middle.norm_squared() - reach_squared) * length_squared > along_middle * along_middle;
+            ball.as_ref().is_some_and(|Ball { to_middle, tangent_squared }| {
+                let along_middle = along.dot(to_middle);
+                let passes = tangent_squared * length_squared > along_middle * along_middle;
                 !passes && self.meet(i, &along).is_some_and(|t| t < 1.0 - SLACK)
             })
         })

@@ -171,8 +171,8 @@ impl Object {
     }
 
     /// The rectangle of the picture (least and greatest column and row) outside of which a pin-hole camera at
-    /// `eye` does not see the body; the whole plane where the body has no end or reaches behind the
-    /// camera.
+    /// `eye` does not see the body: the whole plane where the body has no end or reaches behind the camera,
+    /// and nothing where all of it is there.
     pub(super) fn picture_bounds(
         &self,
         eye: &Point3<f64>,
@@ -182,14 +182,19 @@ impl Object {
         let everywhere =
             [Point2::new(f64::NEG_INFINITY, f64::NEG_INFINITY), Point2::new(f64::INFINITY, f64::INFINITY)];
         let Some(half) = self.shape.half_extent() else { return everywhere };
-        let [mut least, mut greatest] = [everywhere[1], everywhere[0]];
-        for corner in 0..8 {
+        let corners: [Vector3<f64>; 8] = std::array::from_fn(|corner| {
             let sign = |bit: u32| if corner >> bit & 1 == 1 { 1.0 } else { -1.0 };
             let corner = half.component_mul(&Vector3::new(sign(0), sign(1), sign(2)));
-            let seen = self.position + self.rotation * corner - eye;
-            if seen.z <= 1e-3 {
-                return everywhere;
-            }
+            self.position + self.rotation * corner - eye
+        });
+        let nowhere = [everywhere[1], everywhere[0]];
+        match corners.iter().filter(|seen| seen.z <= 1e-3).count() {
+            0 => (),
+            8 => return nowhere,
+            _ => return everywhere,
+        }
+        let [mut least, mut greatest] = nowhere;
+        for seen in corners {
             let pixel = centre + seen.xy() * (focal_px / seen.z);
             least = least.inf(&pixel);
             greatest = greatest.sup(&pixel);

@@ -136,6 +136,7 @@ impl<'a> Picture<'a> {
     }
 
     /// The pixel (x, y), or the nearest one inside.
+    #[inline]
     pub fn at(&self, x: isize, y: isize) -> u8 {
         let x = x.clamp(0, self.width as isize - 1) as usize;
         let y = y.clamp(0, self.height as isize - 1) as usize;

@@ -26,7 +26,13 @@ impl Numbers {
         self.values[y * self.width + x]
     }
 
-    /// The range of a number and of those halfway to its neighbours in the row.
+    /// The range of each number and of those halfway to its neighbours in the row, in the order of `values`.
+    fn ranges(&self) -> Vec<(i32, i32)> {
+        let places = (0..self.height as isize).flat_map(|y| (0..self.width as isize).map(move |x| (x, y)));
+        places.map(|(x, y)| self.range(x, y)).collect()
+    }
+
+    /// That of the number at column `x` of row `y`.
     fn range(&self, x: isize, y: isize) -> (i32, i32) {
         let here = self.at(x, y);
         let halfway = [(self.at(x - 1, y) + here) / 2, (here + self.at(x + 1, y)) / 2];
@@ -64,10 +70,9 @@ impl Looks {
     }
 }
 
-/// How far a number is from those between another one and halfway to that one's neighbours.
-fn apart_between(left: &Numbers, x: isize, right: &Numbers, other_x: isize, y: isize) -> i32 {
-    let (least, greatest) = right.range(other_x, y);
-    (left.at(x, y) - greatest).max(least - left.at(x, y)).max(0)
+/// How far a number is outside of a range.
+fn apart_from((least, greatest): (i32, i32), number: i32) -> i32 {
+    (number - greatest).max(least - number).max(0)
 }
 
 /// How little (x, y) on the left looks like (x - m - d, y) on the right; left of the right picture's edge,
@@ -76,18 +81,19 @@ pub fn costs(between_pixels: bool, config: &Config, left: &Seen<'_>, right: &See
     let penalties = &config.penalties;
     let (left, right) = (Looks::of(left, penalties), Looks::of(right, penalties));
     let (width, height) = (left.along.width, left.along.height);
+    let between = right.along.ranges();
     let mut volume = Volume::filled(width, height, usize::from(config.disparities));
     for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
         for (d, cost) in volume.at_mut(x, y).iter_mut().enumerate() {
             let other = x.saturating_sub(usize::from(config.min_disparity) + d);
-            let (here, there, row) = (x as isize, other as isize, y as isize);
-            let apart = |a: &Numbers, b: &Numbers| (a.at(here, row) - b.at(there, row)).abs();
+            let (here, there) = (y * width + x, y * width + other);
+            let apart = |a: &Numbers, b: &Numbers| (a.values[here] - b.values[there]).abs();
             let along = if between_pixels {
-                apart_between(&left.along, here, &right.along, there, row)
+                apart_from(between[there], left.along.values[here])
             } else {
                 apart(&left.along, &right.along)
             };
-            let bits = (left.census[y * width + x] ^ right.census[y * width + other]).count_ones() as i32;
+            let bits = (left.census[here] ^ right.census[there]).count_ones() as i32;
             let rest =
                 apart(&left.across, &right.across) + apart(&left.brightness, &right.brightness) / 4 + bits;
             let sum = 2 * along + rest;
@@ -100,9 +106,9 @@ pub fn costs(between_pixels: bool, config: &Config, left: &Seen<'_>, right: &See
 /// What a path says to the pixel it goes to: what each disparity costs there.
 fn message(path: &[u16], (step, jump): (u16, u16)) -> Vec<u16> {
     let least = *path.iter().min().expect("a disparity");
+    let stepped = |d: Option<usize>| d.and_then(|d| path.get(d)).map_or(u16::MAX, |&cost| cost + step);
     let at = |d: usize| {
-        let beside = [d.checked_sub(1), Some(d + 1)].into_iter().flatten().filter_map(|d| path.get(d));
-        let beside = beside.map(|&cost| cost + step).min().expect("two disparities");
+        let beside = stepped(d.checked_sub(1)).min(stepped(Some(d + 1)));
         path[d].min(beside).min(least + jump) - least
     };
     (0..path.len()).map(at).collect()

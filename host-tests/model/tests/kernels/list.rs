@@ -1,6 +1,6 @@
 //! All sizes, ranges, pictures and checks.
 
-use super::{HALVES, Twin, W, compare, emulated, pipeline};
+use super::{HALVES, Twin, W, compare, compare_with, emulated, pipeline};
 use std::collections::BTreeSet;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Checks, Config, Fast, Penalties, Row, Sgm, SgmEdge, SgmLean};
@@ -153,7 +153,7 @@ fn run_list<S: Twin>() {
         let pair = pattern.pair(u32::from(config.width), u32::from(config.height), *seed);
         let map = compare(&mut pipeline, config, &pair).unwrap_or_else(|e| panic!("{pattern:?}: {e}"));
         if usize::from(config.disparities) <= HALVES {
-            compare(&mut of_halves, config, &pair)
+            compare_with(&map, &mut of_halves, config, &pair)
                 .unwrap_or_else(|e| panic!("capacity {HALVES}: {pattern:?}: {e}"));
         }
         answers += map.disparity.iter().filter(|d| d.is_some()).count();

@@ -18,7 +18,7 @@ mod repeats;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Block, Config, Method};
 use stereopsis::pipeline::Pipeline;
-use stereopsis_model::held::{Twin, compare, difference, rows};
+use stereopsis_model::held::{Twin, compare, compare_with, difference, rows};
 use stereopsis_model::scene::pattern::Pattern;
 use stereopsis_model::twin::cost::{costs, window_sums, window_sums_plain};
 use stereopsis_model::twin::smooth::Seen;

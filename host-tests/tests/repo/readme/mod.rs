@@ -144,6 +144,9 @@ fn generated_parts_are_those_of_this_tree() {
 
 /// What is committed is cloned as a user would, and every `sh` block of README.md and docs/ is run there.
 ///
+/// `cargo run --release` and the chores run what this test was built with: the same sources, which take
+/// minutes to build once more.
+///
 /// `cargo xtask test` runs it, which installs the programs that they name.
 #[test]
 #[ignore = "builds a clone for the host and for boards; needs CMake, QEMU and compilers for C"]
@@ -161,9 +164,8 @@ fn commands_work_in_a_fresh_clone() {
         let missing = "is not installed; `cargo xtask test` installs it";
         assert!(is_installed(program), "README.md or docs/ run {program}, which {missing}");
     }
-    let target = target_of_clone(folder.path());
     for block in &blocks {
-        run(block, &clone, &target);
+        run(block, &clone);
     }
     let all = blocks.concat();
     assert!(
@@ -193,33 +195,25 @@ fn own_target() -> &'static Path {
     Path::new(env!("CARGO_TARGET_TMPDIR")).parent().expect("the target folder")
 }
 
-/// A target folder for the clone. What users build, in the profile `release`, goes where this test's own
-/// products are, so that the dependencies are built once; the firmware is built apart.
-fn target_of_clone(folder: &Path) -> PathBuf {
-    let target = folder.join("target");
-    fs::create_dir(&target).expect("the clone's target folder");
-    let release = own_target().join("release");
-    fs::create_dir_all(&release).expect("the profile's folder");
-    let link = Command::new("ln").arg("-s").arg(release).arg(&target).status().expect("ln");
-    assert!(link.success(), "ln: {link}");
-    target
-}
-
-/// `cargo` for the blocks. The chores of the clone are those of this repository, which are built.
+/// `cargo` for the blocks: the program and the chores of this repository, which are built.
 const CARGO: &str = r#"cargo() {
-    [ "$1" = xtask ] || { command cargo "$@"; return; }
-    shift
-    manifest=$ROOT/Cargo.toml
-    CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet --manifest-path "$manifest" -p xtask
-    "$OWN_TARGET/debug/xtask" "$@"
+    case "$*" in
+    "run --release -- "*) shift 3; "$STEREO" "$@";;
+    "xtask "*)
+        shift
+        (cd "$ROOT" && CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet -p xtask)
+        "$OWN_TARGET/debug/xtask" "$@";;
+    *) command cargo "$@";;
+    esac
 }
 "#;
 
 /// Runs a block's lines in one shell, which ends at the first that fails.
-fn run(block: &str, clone: &Path, target: &Path) {
+fn run(block: &str, clone: &Path) {
     let mut shell = Command::new("sh");
     shell.args(["-e", "-x", "-c", &format!("{CARGO}{block}")]).current_dir(clone);
-    shell.env("CARGO_TARGET_DIR", target).env("OWN_TARGET", own_target()).env("ROOT", root());
+    shell.env("CARGO_TARGET_DIR", clone.join("target")).env("OWN_TARGET", own_target()).env("ROOT", root());
+    shell.env("STEREO", env!("CARGO_BIN_EXE_stereo"));
     let output = shell.output().expect("sh");
     let told =
         format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr));

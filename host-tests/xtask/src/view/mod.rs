@@ -94,13 +94,11 @@ fn module() -> Outcome<PathBuf> {
 /// The test step of the kernel: SIMD128 beside its naive twin, to the bit.
 pub fn kernels() -> Outcome {
     let [_, target] = TARGETS;
-    let mut tests = cargo(&["test", "--locked", "-p", "stereopsis-model", "--test", "kernels"]);
+    let mut tests = crate::kernels::emulated();
     tests.args(["--target", target]).env("RUSTFLAGS", SIMD);
     let script = root().join("host-tests/live/wasi.mjs");
     // Versions before 20 have the interface behind an option.
     let runner = format!("{NODE} --no-warnings --experimental-wasi-unstable-preview1 {}", script.display());
     tests.env("CARGO_TARGET_WASM32_WASIP1_RUNNER", runner);
-    // The long lists take their share: the host has run all of them.
-    tests.env("STEREOPSIS_EMULATED", "1");
     run_command(tests.env("CARGO_TARGET_DIR", target_dir().join("view")))
 }

@@ -44,7 +44,7 @@ pub fn publish() -> Outcome {
     steps.summary()
 }
 
-/// The oldest compiler that these packages say they build with checks them with features that add code for users.
+/// The oldest compiler that these packages say they build with checks them, with features that add code.
 pub fn stated_rust_version(packages: &[&str]) -> Outcome {
     let version = setup::rust_version()?;
     let mut check = command("rustup", &["run", &version, "cargo", "check", "--locked"]);

@@ -43,8 +43,8 @@ pub fn run(only: Option<String>) -> Outcome {
             ],
         ],
     )?;
-    // What needs those programs, or `stereo` as the tests have built it. The firmware's checksums and the C
-    // interface share a folder.
+    // What needs those programs, or `stereo` as the tests have built it. The firmware's checksums, the C
+    // interface and the examples share a folder.
     side_by_side(
         &mut steps,
         &[
@@ -52,6 +52,8 @@ pub fn run(only: Option<String>) -> Outcome {
                 ("firmware", || firmware::check_sample(&stereo())),
                 ("growth", growth::sample),
                 ("C interface", c::run),
+                ("quickstart", || examples::QUICKSTART.run()),
+                ("async", examples::executors),
             ],
             &[("boards", boards::run)],
             &[("README's commands", readme_commands)],
@@ -59,7 +61,6 @@ pub fn run(only: Option<String>) -> Outcome {
             &[("live page", || view::sample(&stereo())), ("book", || book::sample(&stereo()))],
             &[("cross checks", cross::sample)],
             &[("stated rust-version", rust_version)],
-            &[("quickstart", || examples::QUICKSTART.run()), ("async", examples::executors)],
             &[("gates", rtl::sample)],
         ],
     )?;

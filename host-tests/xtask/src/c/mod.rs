@@ -15,7 +15,7 @@ mod odometry;
 mod program;
 mod raw;
 
-pub use program::{cargo, crc32s};
+pub use program::{Core, cargo, cargo_folder, crc32s};
 
 use crate::header;
 use crate::pictures::Pictures;

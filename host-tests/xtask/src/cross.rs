@@ -4,7 +4,8 @@
 //! the live page and, for 64-bit Arm, by the tests of kernels.
 
 use crate::setup::{self, CHECKED, FROM_SOURCE, TARGETS};
-use crate::steps::{Failure, Outcome, cargo, run as run_command, target_dir};
+use crate::steps::{Failure, Outcome, cargo, root, run as run_command, target_dir};
+use std::path::PathBuf;
 use std::process::Command;
 
 /// The library's features.
@@ -12,7 +13,7 @@ const FEATURES: [&str; 6] = ["async", "defmt", "embedded-graphics", "ffi", "serd
 
 /// The targets that nothing else of the test builds for: the smallest Arm, a core without compare-and-swap,
 /// and one of 64 bits without an operating system.
-const NOT_BUILT: [&str; 3] =
+pub const NOT_BUILT: [&str; 3] =
     ["thumbv6m-none-eabi", "riscv32i-unknown-none-elf", "riscv64gc-unknown-none-elf"];
 
 /// The core on which combinations of features are checked.
@@ -59,8 +60,13 @@ fn check_targets(targets: &[&str]) -> Outcome {
 fn check(features: &str, more: &[&str]) -> Command {
     let mut check = cargo(&["check", "--locked", "-p", "stereopsis", "--features", features]);
     check.args(more).env("RUSTFLAGS", "-D warnings");
-    check.env("CARGO_TARGET_DIR", target_dir().join("cross"));
+    check.env("CARGO_TARGET_DIR", folder());
     check
+}
+
+/// Where the checks are made.
+pub fn folder() -> PathBuf {
+    root().join(target_dir()).join("cross")
 }
 
 fn refusals() -> Outcome {

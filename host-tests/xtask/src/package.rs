@@ -1,6 +1,7 @@
 //! The crate as a registry would hand it out: its files, its dependencies, and that it builds away from the
 //! repository. `cargo xtask publish` adds what takes tools of its own. Nothing is published.
 
+use crate::cross;
 use crate::setup;
 use crate::steps::{
     Failure, Outcome, Steps, cargo, command, output_of, root, run as run_command, target_dir,
@@ -18,8 +19,9 @@ const FILES: [&str; 6] =
 /// Its version 0.3 is a bridge to the first one, for crates that stand between.
 const WITH_A_BRIDGE: &str = "defmt";
 
-/// A core that the unpacked package is built for, beside this machine.
-const TARGET: &str = "thumbv7em-none-eabihf";
+/// A core that the unpacked package is checked for, beside this machine: one whose dependencies the cross checks
+/// have checked.
+const TARGET: &str = cross::NOT_BUILT[0];
 
 /// The test step.
 pub fn run() -> Outcome {
@@ -172,7 +174,7 @@ fn builds_unpacked() -> Outcome {
     run_command(command("tar", &["-xzf"]).arg(&packed).arg("-C").arg(folder.path()))?;
     for target in [&[][..], &["--target", TARGET]] {
         let mut check = cargo(&["check", "--all-features"]);
-        let check = check.args(target).env("CARGO_TARGET_DIR", root().join(target_dir()));
+        let check = check.args(target).env("CARGO_TARGET_DIR", cross::folder());
         run_command(check.env("RUSTFLAGS", "-D warnings").current_dir(folder.path().join(&package)))?;
     }
     Ok(())

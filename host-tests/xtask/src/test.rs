@@ -57,9 +57,9 @@ pub fn run(only: Option<String>) -> Outcome {
             ],
             &[("boards", boards::run)],
             &[("README's commands", readme_commands)],
-            &[("clippy", clippy), ("documentation", documentation), ("package", package::run)],
+            &[("clippy", clippy), ("documentation", documentation)],
             &[("live page", || view::sample(&stereo())), ("book", || book::sample(&stereo()))],
-            &[("cross checks", cross::sample)],
+            &[("cross checks", cross::sample), ("package", package::run)],
             &[("stated rust-version", rust_version)],
             &[("gates", rtl::sample)],
         ],
@@ -163,12 +163,14 @@ fn stereo() -> PathBuf {
 }
 
 fn documentation() -> Outcome {
-    // The core's private items too: its comments link to them. Then what a user reads, in the same place.
-    for words in ["-p stereopsis --features async,ffi --document-private-items", "--workspace"] {
+    // The core's private items too: its comments link to them. Then what a user reads, in the same place, of
+    // the features that clippy has checked.
+    let readers = "--workspace --features stereopsis/defmt";
+    for words in ["-p stereopsis --features async,ffi --document-private-items", readers] {
         let mut docs = cargo(&["doc", "--locked", "--no-deps"]);
         run_command(docs.args(words.split_whitespace()).env("RUSTDOCFLAGS", "-D warnings"))?;
     }
-    run_command(firmware::cargo("doc --locked --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
+    run_command(firmware::cargo("doc --locked --release --no-deps").env("RUSTDOCFLAGS", "-D warnings"))
 }
 
 /// After the tests, which have built this one.

@@ -41,6 +41,9 @@ fn long<T>(list: impl IntoIterator<Item = T>, nth: usize) -> impl Iterator<Item 
     list.into_iter().step_by(if emulated() { nth } else { 1 })
 }
 
+/// A pipeline of the largest capacity.
+// Inlined, each call would have a place for it on its caller's stack, beside the box.
+#[inline(never)]
 fn pipeline<S: Method>() -> Box<Any<S>> {
     Box::new(Pipeline::new())
 }

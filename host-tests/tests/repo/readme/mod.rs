@@ -201,7 +201,8 @@ const CARGO: &str = r#"cargo() {
     "run --release -- "*) shift 3; "$STEREO" "$@";;
     "xtask "*)
         shift
-        (cd "$ROOT" && CARGO_TARGET_DIR=$OWN_TARGET command cargo build --locked --quiet -p xtask)
+        export CARGO_TARGET_DIR=$OWN_TARGET
+        (cd "$ROOT" && command cargo build --locked --quiet -p xtask)
         "$OWN_TARGET/debug/xtask" "$@";;
     *) command cargo "$@";;
     esac

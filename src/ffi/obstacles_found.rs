@@ -45,7 +45,7 @@ unsafe fn write_each<T>(
 /// ground's bytes.
 pub unsafe fn obstacles_ground(handle: *mut ObstaclesHandle, ground: *mut CGround) -> Status {
     // SAFETY: the caller's promise.
-    unsafe { write_each(handle, ground, 1, |view, _| view.ground().into()) }
+    unsafe { write_each(handle, ground, 1, |view, _| view.plane().into()) }
 }
 
 /// Writes stixels from the left, as `stereopsis_obstacles_stixels`.

@@ -72,11 +72,15 @@ pub struct CGround {
     pub pitch_rad: f32,
     /// Roll of the camera, radians: positive where its right side is the lower one.
     pub roll_rad: f32,
+    /// Standard deviation of the pitch, radians.
+    pub pitch_sigma_rad: f32,
     /// Variance of the parallax, squares of 1/32 px.
     pub variance: u32,
     /// Height of the camera above the ground, mm.
     pub height_mm: u16,
-    /// Whether a ground is known; all else is 0 where it is not.
+    /// Whether the ground is known: three deviations of its pitch are within half a degree. Where it is not,
+    /// the rest is the plane from which heights are measured, of which too little is seen to be sure of its
+    /// pitch; the height is 0 where there is none, as is all else.
     pub is_known: u8,
 }
 
@@ -151,14 +155,17 @@ impl From<Option<Ground>> for CGround {
                 lean: 0,
                 pitch_rad: 0.0,
                 roll_rad: 0.0,
+                pitch_sigma_rad: 0.0,
                 variance: 0,
                 height_mm: 0,
                 is_known: 0,
             };
         };
-        let (pitch_rad, roll_rad) = (ground.pitch_rad(), ground.roll_rad());
-        let Ground { level, slope, lean, variance, height_mm, .. } = ground;
-        Self { level, slope, lean, pitch_rad, roll_rad, variance, height_mm, is_known: 1 }
+        let (pitch_rad, roll_rad, pitch_sigma_rad) =
+            (ground.pitch_rad(), ground.roll_rad(), ground.pitch_sigma_rad());
+        let (is_known, Ground { level, slope, lean, variance, height_mm, .. }) =
+            (ground.is_sure().into(), ground);
+        Self { level, slope, lean, pitch_rad, roll_rad, pitch_sigma_rad, variance, height_mm, is_known }
     }
 }
 

@@ -1709,6 +1709,10 @@ typedef struct stereopsis_ground {
    */
   float roll_rad;
   /**
+   * Standard deviation of the pitch, radians.
+   */
+  float pitch_sigma_rad;
+  /**
    * Variance of the parallax, squares of 1/32 px.
    */
   uint32_t variance;
@@ -1717,7 +1721,9 @@ typedef struct stereopsis_ground {
    */
   uint16_t height_mm;
   /**
-   * Whether a ground is known; all else is 0 where it is not.
+   * Whether the ground is known: three deviations of its pitch are within half a degree. Where it is not,
+   * the rest is the plane from which heights are measured, of which too little is seen to be sure of its
+   * pitch; the height is 0 where there is none, as is all else.
    */
   uint8_t is_known;
 } stereopsis_ground;

@@ -46,7 +46,8 @@ pub struct ObstacleConfig {
     /// Least confidence of an answer that counts, where confidences are given.
     pub min_confidence: u8,
     /// Least confidence of an answer above the horizon, where confidences are given: below it the ground
-    /// tells what is wrong, above it nothing does.
+    /// tells what is wrong, above it nothing does. The methods along paths carry wrong matches over a noisy
+    /// sky, and need it.
     pub sky_confidence: u8,
     /// Where the ground comes from.
     pub ground: GroundSource,
@@ -129,8 +130,8 @@ impl ObstacleConfig {
 
 impl Default for ObstacleConfig {
     /// Cells of 4 x 5 px, a deviation of 0.15 px as all methods have it, a ground 0.1 m to 3 m below a camera
-    /// that is pitched by at most 27 degrees and rolled by at most 7, obstacles and drops of 5 cm, and 16
-    /// sectors.
+    /// that is pitched by at most 27 degrees and rolled by at most 7, obstacles and drops of 5 cm, 16
+    /// sectors, and a confidence of 100 in the sky.
     ///
     /// The least area is four matching windows of 9 x 9 px: a wrong answer spreads over one window, and the
     /// next one agrees with it within one px by chance in one case of sixteen, with 32 disparities. A tenth
@@ -141,7 +142,7 @@ impl Default for ObstacleConfig {
             cell_height: 5,
             sigma_steps: 5,
             min_confidence: 0,
-            sky_confidence: 0,
+            sky_confidence: 100,
             ground: GroundSource::Searched {
                 least_height_mm: 100,
                 most_height_mm: 3000,

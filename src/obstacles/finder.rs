@@ -2,16 +2,15 @@
 
 use super::column::Column;
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
-use super::grid::{Filling, fill};
+use super::grid::Filling;
 use super::ground::{CarriedGround, Ground};
 use super::setup::Setup;
 use super::state::ObstaclesState;
 use super::stixel::Labelling;
 use super::surfaces::stixels;
-use super::v_disparity::{BINS, count, fit};
-use super::watchdog::{BlindReason, Watchdog};
+use super::v_disparity::{BINS, fit};
+use super::watchdog::BlindReason;
 use crate::depth::DepthScale;
-use crate::imaging::PairMonitor;
 use crate::units::{Disparity, PixelFlags};
 
 /// Obstacles of frames of up to `C` columns and `R` rows of cells, in fixed memory: about `2 C R + 31 C + 33
@@ -34,10 +33,10 @@ pub struct Obstacles<const C: usize, const R: usize> {
 #[derive(Debug)]
 pub struct ObstaclesView<'a> {
     pub(super) cells: &'a mut [Disparity],
-    filling: &'a mut [Filling],
+    pub(super) filling: &'a mut [Filling],
     pub(super) bins: &'a mut [u8],
     pub(super) columns: &'a mut [Column],
-    labels: &'a mut [u8],
+    pub(super) labels: &'a mut [u8],
     pub(super) bearings: &'a mut [i16],
     pub(super) state: &'a mut ObstaclesState,
 }
@@ -110,7 +109,7 @@ impl<'a> ObstaclesView<'a> {
     /// A finder in the caller's memory: `filling`, `columns` and `bearings` have one of each for every
     /// column of cells, `labels` has one and `bins` has [`Self::BINS`] for every row of cells, `cells` holds
     /// all cells of a frame. It does not matter what is in them before [`Self::start`], which names what is
-    /// too short; later views need what the last one left.
+    /// too short; later views need what the last one left, and one that has less is as if it were not started.
     pub fn new(
         state: &'a mut ObstaclesState,
         cells: &'a mut [Disparity],
@@ -167,31 +166,22 @@ impl ObstaclesView<'_> {
         size: [u16; 2],
         largest: Disparity,
     ) -> Result<Setup, ObstacleError> {
+        let setup = Setup::new(config, scale, size, largest)?;
+        self.check_memory(&setup)?;
+        Ok(setup)
+    }
+
+    /// Whether this memory is enough for what a start settled.
+    fn check_memory(&self, setup: &Setup) -> Result<(), ObstacleError> {
         let most_columns = self.columns.len().min(self.filling.len()).min(self.bearings.len());
         let most_rows = self.labels.len().min(self.bins.len() / BINS).min(255);
-        let setup = Setup::new(config, scale, size, largest)?;
         if setup.columns > most_columns {
             return Err(ObstacleError::Columns { needed: setup.columns });
         }
         if setup.rows > most_rows || setup.rows * setup.columns > self.cells.len() {
             return Err(ObstacleError::Rows { needed: setup.rows });
         }
-        Ok(setup)
-    }
-
-    /// Begins a frame. A frame that was not finished is forgotten.
-    pub fn begin(&mut self) {
-        self.state.watchdog = Watchdog::NEW;
-        self.state.sky = self.setup().map_or(0, |setup| setup.sky(self.state.carried.ground));
-        self.state.next = 0;
-        self.filling.fill(Filling::EMPTY);
-        self.cells.fill(Disparity::NONE);
-        self.bins.fill(0);
-    }
-
-    /// Takes what the monitor of the cameras says of this frame, before it is finished.
-    pub fn cameras(&mut self, monitor: &PairMonitor) {
-        self.state.watchdog.cameras(monitor);
+        Ok(())
     }
 
     /// Sets the pose of the camera from this frame on, as [`GroundSource::Given`] has it.
@@ -202,55 +192,6 @@ impl ObstaclesView<'_> {
         config.check()?;
         self.state.setup.config = config;
         Ok(())
-    }
-
-    /// Takes row `y` of pixels, with its confidences or none. A row that has been, and one that is too short,
-    /// is ignored; rows that are left out count as lost.
-    pub fn push(&mut self, y: usize, disparities: &[Disparity], flags: &[PixelFlags], confidences: &[u8]) {
-        let Some(setup) = self.setup() else { return };
-        let pixels = setup.columns * usize::from(setup.config.cell_width);
-        if y < self.state.next || y >= setup.height || disparities.len().min(flags.len()) < pixels {
-            return;
-        }
-        self.pass(&setup, y);
-        let cells = self.filling.get_mut(..setup.columns).unwrap_or_default();
-        let width = usize::from(setup.config.cell_width);
-        let least = setup.config.least_confidence(y < self.state.sky.into());
-        let all = fill(cells, width, disparities, flags, confidences, least);
-        self.state.watchdog.row(all);
-        self.state.next = y + 1;
-        if self.state.next.is_multiple_of(usize::from(setup.config.cell_height.max(1))) {
-            self.close(&setup, y);
-        }
-    }
-
-    /// Counts the rows before `y` that did not come, and closes the rows of cells that end above it.
-    fn pass(&mut self, setup: &Setup, y: usize) {
-        let missing = y.saturating_sub(self.state.next);
-        self.state.watchdog.lost += missing as u32;
-        let height = usize::from(setup.config.cell_height.max(1));
-        let crossed = y.checked_div(height) != self.state.next.checked_div(height);
-        if missing > 0 && crossed {
-            self.close(setup, self.state.next);
-        }
-        self.state.next = y;
-    }
-
-    /// Ends the row of cells that row `y` of pixels is in.
-    fn close(&mut self, setup: &Setup, y: usize) {
-        let config = &setup.config;
-        let row = y.checked_div(usize::from(config.cell_height)).unwrap_or(usize::MAX);
-        let most = config.cell_width.div_ceil(3).wrapping_mul(config.cell_height);
-        let cells = self.cells.chunks_exact_mut(setup.columns.max(1)).nth(row).unwrap_or_default();
-        if row >= setup.rows {
-            return;
-        }
-        for (cell, filling) in cells.iter_mut().zip(self.filling.iter_mut()) {
-            *cell = filling.answer(most);
-            self.state.watchdog.answered += u32::from(cell.is_some());
-            *filling = Filling::EMPTY;
-        }
-        count(self.bins.chunks_exact_mut(BINS).nth(row).unwrap_or_default(), cells, setup.shift);
     }
 
     /// Ends a frame: finds its ground, stixels and surfaces, and says if the frame is to be trusted. The
@@ -269,7 +210,7 @@ impl ObstaclesView<'_> {
                 Ground::given(pitch_mrad, roll_mrad, height_mm, rig)
             }
             GroundSource::Searched { .. } if self.state.blind.is_none() => {
-                fit(&cells, self.bins, setup.shift, self.state.carried.ground, &config.ground, rig)
+                fit(&cells, self.bins, setup.shift, self.state.carried.ground, config, rig)
             }
             GroundSource::Searched { .. } => None,
         };
@@ -281,14 +222,16 @@ impl ObstaclesView<'_> {
         self.state.blind.map_or(Ok(()), Err)
     }
 
-    /// What the start settled, if there was one.
+    /// What the start settled, if there was one and this memory is enough for it.
     pub(super) fn setup(&self) -> Option<Setup> {
-        Some(self.state.setup).filter(|setup| setup.columns > 0)
+        let setup = &self.state.setup;
+        (setup.columns > 0 && self.check_memory(setup).is_ok()).then_some(*setup)
     }
 
     /// Why the last frame is not to be trusted, if it is not.
     pub fn blind(&self) -> Option<BlindReason> {
-        if self.state.is_finished { self.state.blind } else { Some(BlindReason::NoFrame) }
+        let is_finished = self.state.is_finished && self.setup().is_some();
+        if is_finished { self.state.blind } else { Some(BlindReason::NoFrame) }
     }
 
     /// The disparity of a cell of the last frame.

@@ -43,6 +43,15 @@ impl RigNumbers {
         let tangent = (u - self.cx_16ths as f32 / 16.0) * 16.0 / self.focal_16ths as f32;
         round(1000.0 * atan(tangent)) as i16
     }
+
+    /// Deviation of the pitch's tangent, 65536ths, where the parallax of a plane with this slope has a
+    /// variance at the horizon, 256ths of squared steps: that of the horizon's row beside the focal length.
+    pub(super) fn pitch_sigma(&self, slope: i64, variance_256ths: u64) -> Option<u16> {
+        // A slope is below 2^30, the root below 2^31: no wrap.
+        let per_row = (slope * i64::from(self.focal_16ths)) as u64;
+        let sigma = (variance_256ths.isqrt() << 32).checked_div(per_row)?;
+        Some(sigma.min(u16::MAX.into()) as u16)
+    }
 }
 
 /// A ground plane: its parallax `d + doffs` grows by a constant from row to row, and by another one from
@@ -70,9 +79,24 @@ pub struct Ground {
     pub height_mm: u16,
     /// Tangent of the downward pitch of the camera in 65536ths.
     pub pitch_tangent: i32,
+    /// Standard deviation of that tangent in 65536ths, at most 65535: 0 where the pose is given.
+    pub pitch_sigma: u16,
 }
 
 impl Ground {
+    /// Largest deviation of a pitch that is sure, its tangent in 65536ths: a third of half a degree.
+    const SURE: u16 = 190;
+
+    /// Whether the pitch is sure: three standard deviations of it are within half a degree.
+    pub fn is_sure(&self) -> bool {
+        self.pitch_sigma <= Self::SURE
+    }
+
+    /// Standard deviation of [`Self::pitch_rad`], radians.
+    pub fn pitch_sigma_rad(&self) -> f32 {
+        f32::from(self.pitch_sigma) / 65_536.0
+    }
+
     /// Parallax of the ground at half-row `halves` (row `halves / 2`) in the column of the principal point,
     /// 256ths of a step of disparity.
     pub(super) fn parallax_256ths(&self, halves: i64) -> i32 {
@@ -129,7 +153,8 @@ impl Ground {
         let scaled = (i64::from(rig.baseline_16ths) * 131_072) as u64;
         let height_mm = u16::try_from(scaled.checked_div(norm)?).ok()?;
         let pitch_tangent = i32::try_from((inclination * 65_536).checked_div(down.isqrt() as i64)?).ok()?;
-        Some(Self { level, slope, lean: lean as i32, variance, height_mm, pitch_tangent })
+        let (lean, pitch_sigma) = (lean as i32, 0);
+        Some(Self { level, slope, lean, variance, height_mm, pitch_tangent, pitch_sigma })
     }
 
     /// The plane below a camera of known pose, thousandths of a radian, with no uncertainty but that of 1
@@ -214,14 +239,26 @@ impl CarriedGround {
     /// Frames for which a ground is carried without being measured.
     const MOST_HELD: u8 = 8;
 
+    /// The carried ground in the next frame, before it is measured there.
+    fn predicted(&self, rig: &RigNumbers) -> Option<Ground> {
+        let ground = self.ground?;
+        let nod = rig.pitch_sigma(ground.slope, u64::from(Self::PER_FRAME) << 8).unwrap_or(u16::MAX);
+        let [before, nod] = [ground.pitch_sigma, nod].map(u32::from);
+        // Each is below 2^16; both squares may not fit in 32 bits.
+        let pitch_sigma = (u64::from(before * before) + u64::from(nod * nod)).isqrt().min(u16::MAX.into());
+        let (variance, pitch_sigma) = (ground.variance + Self::PER_FRAME, pitch_sigma as u16);
+        Some(Ground { variance, pitch_sigma, ..ground })
+    }
+
     /// Takes what a frame measured. A measurement within three deviations at all of `at`, half-rows and
     /// positions to the right, is averaged with what was carried, by their variances; any other one replaces
     /// it.
+    ///
+    /// The deviations of pitches are averaged as well: what a texture does to a fit it does in all frames.
     pub(super) fn update(&mut self, measured: Option<Ground>, at: [(i64, i64); 4], rig: &RigNumbers) {
-        let carried = self.ground.map(|g| Ground { variance: g.variance + Self::PER_FRAME, ..g });
-        let (Some(old), Some(new)) = (carried, measured) else {
+        let (Some(old), Some(new)) = (self.predicted(rig), measured) else {
             self.age = if measured.is_some() { 0 } else { self.age.saturating_add(1) };
-            self.ground = measured.or(carried.filter(|_| self.age <= Self::MOST_HELD));
+            self.ground = measured.or(self.predicted(rig).filter(|_| self.age <= Self::MOST_HELD));
             return;
         };
         self.age = 0;
@@ -235,7 +272,9 @@ impl CarriedGround {
         let variance = (i64::from(old.variance) * (256 - gain) / 256).max(1) as u32;
         let (level, slope) = (mix(old.level, new.level), mix(old.slope, new.slope));
         let lean = mix(old.lean.into(), new.lean.into());
+        let pitch_sigma = mix(old.pitch_sigma.into(), new.pitch_sigma.into()) as u16;
         let mixed = Ground::from_line(level, slope, lean, variance, rig);
+        let mixed = mixed.map(|ground| Ground { pitch_sigma, ..ground });
         self.ground = if agree { mixed.or(measured) } else { measured };
     }
 }

@@ -5,12 +5,13 @@
 //! nearest [`Sector`] by bearing, a [`LaserScan`], and a [`Decision`].
 //!
 //! ```text
-//! for every row of pixels, `push`:
+//! for every row of pixels, `push` in `rows`:
 //!   grid         pixels -> cells of 4 x 5 px, each the nearer of its two largest groups of disparities
 //!   v_disparity  a row of cells -> counts of disparities
 //!   watchdog     rows lost or damaged, cells with an answer
-//! for every frame, `finish`:
-//!   v_disparity  counts, cells -> the line of the ground: random pairs of cells, least squares
+//! for every frame, `finish` in `finder`:
+//!   v_disparity  counts, cells -> the line of the ground: random pairs of cells
+//!   least_squares  a line, cells near to it -> the plane of the ground
 //!   ground       the line over frames; height and pitch of the camera, heights above the ground
 //!   stixel       a column of cells -> ground, obstacle or drop, beyond: the labels of the least cost
 //!   surfaces     columns side by side -> connected surfaces of enough pixels
@@ -50,8 +51,10 @@
 
 mod config;
 mod column;
+mod cells;
 mod grid;
 mod ground;
+mod least_squares;
 mod v_disparity;
 mod setup;
 mod interval;
@@ -60,6 +63,7 @@ mod surfaces;
 mod watchdog;
 mod state;
 mod finder;
+mod rows;
 mod sector;
 mod scan;
 mod held;

@@ -134,8 +134,14 @@ impl ObstaclesView<'_> {
         self.setup().map_or(0, |setup| setup.columns)
     }
 
-    /// The ground of the last frame, if one is known.
+    /// The ground of the last frame, if one is known whose pitch is sure ([`Ground::is_sure`]).
     pub fn ground(&self) -> Option<Ground> {
+        self.plane().filter(Ground::is_sure)
+    }
+
+    /// The plane from which heights were measured in the last frame: the ground, or what is known of one of
+    /// which too few rows are seen to be sure of its pitch.
+    pub fn plane(&self) -> Option<Ground> {
         self.state.carried.ground
     }
 

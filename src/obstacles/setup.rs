@@ -1,8 +1,9 @@
 //! What a start settles: limits, a rig in integers, and the number of cells.
 
+use super::cells::Cells;
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::ground::{Ground, RigNumbers};
-use super::v_disparity::{Cells, bin_shift};
+use super::v_disparity::bin_shift;
 use crate::depth::DepthScale;
 use crate::units::Disparity;
 

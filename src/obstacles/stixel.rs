@@ -1,11 +1,11 @@
 //! Stixels: a column of cells as ground, obstacle or drop, and beyond (Badino, Franke & Pfeiffer 2009), by
 //! the Viterbi algorithm in integers.
 
+use super::cells::Cells;
 use super::column::{Column, MOST_GAP, StixelKind};
 use super::config::{GroundSource, ObstacleConfig};
 use super::ground::Ground;
 use super::interval::{Between, Interval};
-use super::v_disparity::Cells;
 use crate::units::Disparity;
 
 /// What contradicting a label costs at most, at three standard deviations.

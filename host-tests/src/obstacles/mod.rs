@@ -117,9 +117,12 @@ impl ObstacleWatch {
             self.judge(frame.largest, pictures);
         }
         let map = frame.map;
+        // Where they were asked for, no answer has none.
+        let are_sure = map.confidence.iter().any(|&sure| sure > 0);
         for y in 0..map.height.min(frame.rows) {
             let row = y * map.width..(y + 1) * map.width;
-            self.finder.push(y, &map.disparity[row.clone()], &map.flags[row.clone()], &map.confidence[row]);
+            let sure = if are_sure { &map.confidence[row.clone()] } else { &[] };
+            self.finder.push(y, &map.disparity[row.clone()], &map.flags[row], sure);
         }
         // The record says so as well.
         let _ = self.finder.finish();

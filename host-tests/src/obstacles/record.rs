@@ -4,7 +4,8 @@ use super::Vehicle;
 use serde::Serialize;
 use std::fmt::Write as _;
 use stereopsis::obstacles::{
-    Decision, FreeSpace, ObstacleConfig, ObstaclesView, Sector, SectorState, Stixel, StixelKind, Verdict,
+    Decision, FreeSpace, Ground, ObstacleConfig, ObstaclesView, Sector, SectorState, Stixel, StixelKind,
+    Verdict,
 };
 use stereopsis::units::Disparity;
 
@@ -17,8 +18,11 @@ pub struct ObstacleRecord {
     pub blind: Option<String>,
     /// Columns and rows of pixels in a cell.
     pub cell: [u8; 2],
-    /// The ground, if one is known.
+    /// The ground, if one is known whose pitch is sure: three deviations of it are within half a degree.
     pub ground: Option<GroundRecord>,
+    /// The plane from which heights are measured: the ground, or what is known of one of which too few rows
+    /// are seen to be sure of its pitch.
+    pub plane: Option<GroundRecord>,
     /// What is nearest by bearing, from the left.
     pub sectors: Vec<SectorRecord>,
     /// The sectors with hysteresis over the frames: an obstacle is let go of with the third frame without it.
@@ -38,6 +42,8 @@ pub struct GroundRecord {
     pub height_m: f32,
     /// Downward pitch of the camera, degrees.
     pub pitch_deg: f32,
+    /// Deviation of the pitch, degrees.
+    pub pitch_sigma_deg: f32,
     /// Roll of the camera, degrees: positive where its right side is the lower one.
     pub roll_deg: f32,
     /// Deviation of its disparities, px.
@@ -131,12 +137,6 @@ impl ObstacleRecord {
         verdict: &Verdict,
         vehicle: &Vehicle,
     ) -> Self {
-        let ground = frame.ground().map(|ground| GroundRecord {
-            height_m: metres(ground.height_mm),
-            pitch_deg: ground.pitch_rad().to_degrees(),
-            roll_deg: ground.roll_rad().to_degrees(),
-            sigma_px: (ground.variance as f32).sqrt() / f32::from(Disparity::ONE),
-        });
         let stixels = (0..frame.columns()).filter_map(|x| {
             let stixel = frame.stixel(x);
             (stixel.kind != StixelKind::Nothing).then(|| StixelRecord::new(config, x, &stixel))
@@ -145,7 +145,8 @@ impl ObstacleRecord {
             frame: 1,
             blind: frame.blind().map(|reason| format!("{reason:?}")),
             cell: [config.cell_width, config.cell_height],
-            ground,
+            ground: frame.ground().as_ref().map(GroundRecord::new),
+            plane: frame.plane().as_ref().map(GroundRecord::new),
             sectors: (0..frame.sectors()).map(|i| SectorRecord::new(&frame.sector(i))).collect(),
             free_space: (0..frame.sectors()).map(|i| SectorRecord::new(&space.sector(i))).collect(),
             scan: ScanRecord::new(frame),
@@ -175,13 +176,31 @@ impl ObstacleRecord {
         if let Some(reason) = reason {
             let _ = write!(line, " ({reason})");
         }
-        match &self.ground {
-            Some(GroundRecord { height_m, pitch_deg, .. }) => {
+        match (&self.ground, &self.plane) {
+            (Some(GroundRecord { height_m, pitch_deg, .. }), _) => {
                 let _ = write!(line, "; ground {height_m:.2} m below, pitch {pitch_deg:.1} degrees down");
             }
-            None => line += "; no ground",
+            (None, Some(GroundRecord { pitch_sigma_deg, .. })) => {
+                let _ = write!(
+                    line,
+                    "; ground seen over too few rows (pitch sure to {pitch_sigma_deg:.1} degrees)"
+                );
+            }
+            (None, None) => line += "; no ground",
         }
         line
+    }
+}
+
+impl GroundRecord {
+    fn new(ground: &Ground) -> Self {
+        Self {
+            height_m: metres(ground.height_mm),
+            pitch_deg: ground.pitch_rad().to_degrees(),
+            pitch_sigma_deg: ground.pitch_sigma_rad().to_degrees(),
+            roll_deg: ground.roll_rad().to_degrees(),
+            sigma_px: (ground.variance as f32).sqrt() / f32::from(Disparity::ONE),
+        }
     }
 }
 

@@ -190,12 +190,14 @@ fn frames_are_equal(config: ObstacleConfig, change: impl Fn(&mut CObstacleConfig
             ok(stereopsis_drive_decide(drive, handle, SPEED, verdict.as_mut_ptr()));
             (ground.assume_init(), scan.assume_init(), verdict.assume_init())
         };
-        let known = view
-            .ground()
-            .map(|g| (g.level, g.slope, g.lean, g.variance, g.height_mm, (g.pitch_rad(), g.roll_rad())));
-        let angles = (ground.pitch_rad, ground.roll_rad);
+        let known = view.plane().map(|g| {
+            let angles = [g.pitch_rad(), g.roll_rad(), g.pitch_sigma_rad()];
+            (g.level, g.slope, g.lean, g.variance, g.height_mm, angles)
+        });
+        let angles = [ground.pitch_rad, ground.roll_rad, ground.pitch_sigma_rad];
         let of_c = (ground.level, ground.slope, ground.lean, ground.variance, ground.height_mm, angles);
-        assert_eq!((ground.is_known == 1).then_some(of_c), known, "frame {number}");
+        assert_eq!((ground.height_mm > 0).then_some(of_c), known, "frame {number}");
+        assert_eq!(ground.is_known == 1, view.ground().is_some(), "frame {number}");
         for (column, stixel) in stixels.iter().enumerate() {
             // SAFETY: as above.
             let found = unsafe { stixel.assume_init() };

@@ -1,10 +1,13 @@
-//! What counts: things that stand out of the ground in parts, answers in the sky, and a known height.
+//! What counts: things that stand out of the ground in parts, answers in the sky, a known height, and sizes.
 
 use super::support::{Map, floor, rig};
 use std::ops::Range;
+use stereopsis::depth::DepthScale;
 use stereopsis::obstacles::{
-    BlindReason, Decision, DriveConfig, DriveRule, GroundSource, ObstacleConfig, StixelKind,
+    BlindReason, Column, Decision, DriveConfig, DriveRule, Filling, GroundSource, ObstacleConfig,
+    ObstaclesState, ObstaclesView, StixelKind,
 };
+use stereopsis::units::Disparity;
 
 #[test]
 fn a_known_height_is_the_grounds() {
@@ -23,12 +26,16 @@ fn a_known_height_is_the_grounds() {
         let mut finder = map.finder(&ObstacleConfig { ground: source, ..ObstacleConfig::default() });
         map.rows(&mut finder, |_| true);
         assert_eq!(finder.finish(), Ok(()));
-        finder.as_mut_view().ground().map(|ground| (ground.height_mm, f64::from(ground.pitch_rad()) - pitch))
+        let view = finder.as_mut_view();
+        let plane = view.plane()?;
+        assert_eq!(view.ground(), Some(plane).filter(|plane| plane.is_sure()));
+        Some((plane.height_mm, f64::from(plane.pitch_rad()) - pitch, plane.is_sure()))
     };
-    let (free, tilt) = ground([100, 3000]).expect("a ground");
+    let (free, tilt, is_sure) = ground([100, 3000]).expect("a plane");
     assert!((305..318).contains(&free) && tilt.to_degrees() > 0.7, "{free} mm, {tilt} rad");
-    let (height, tilt) = ground([300, 300]).expect("a ground");
-    assert!(height == 300 && tilt.to_degrees().abs() < 0.1, "{height} mm, {tilt} rad");
+    assert!(!is_sure, "over 7 rows of cells a pitch is not sure");
+    let (height, tilt, is_sure) = ground([300, 300]).expect("a ground");
+    assert!(height == 300 && tilt.to_degrees().abs() < 0.1 && is_sure, "{height} mm, {tilt} rad");
     // What is more than an eighth off is not the ground.
     assert_eq!(ground([360, 400]), None);
 }
@@ -80,5 +87,61 @@ fn unsure_answers_above_the_horizon_do_not_count() {
         }
         let is_standing = finder.as_mut_view().stixel(20).kind == StixelKind::Obstacle;
         assert_eq!(is_standing, counts, "from row {top}, confidence {sure}");
+    }
+}
+
+#[test]
+fn less_memory_than_was_started_is_blind() {
+    let map = Map::of(rig(), [160, 120], |_, v| floor(&rig(), 0.3, 0.1, v));
+    let scale = DepthScale::new(&map.rig).expect("a scale");
+    let (mut state, mut cells) = (ObstaclesState::new(), [Disparity::NONE; 40 * 24]);
+    let (mut filling, mut columns) = ([Filling::default(); 40], [Column::default(); 40]);
+    let (mut bins, mut labels, mut bearings) = ([0; 24 * ObstaclesView::BINS], [0; 24], [0; 40]);
+    let enough = [40 * 24, 40, 24 * ObstaclesView::BINS, 40, 24, 40];
+    for short in [enough.len()].into_iter().chain(0..enough.len()) {
+        let mut lengths = enough;
+        lengths.iter_mut().skip(short).take(1).for_each(|length| *length -= 1);
+        let mut view = ObstaclesView::new(
+            &mut state,
+            &mut cells[..lengths[0]],
+            &mut filling[..lengths[1]],
+            &mut bins[..lengths[2]],
+            &mut columns[..lengths[3]],
+            &mut labels[..lengths[4]],
+            &mut bearings[..lengths[5]],
+        );
+        if short == enough.len() {
+            let config = ObstacleConfig::default();
+            assert_eq!(view.start(&config, &scale, map.size, map.largest), Ok(()));
+        }
+        view.begin();
+        for (y, (disparities, flags)) in map.disparities.chunks(160).zip(map.flags.chunks(160)).enumerate() {
+            view.push(y, disparities, flags, &[]);
+        }
+        let blind = Some(BlindReason::NoFrame).filter(|_| short < enough.len());
+        assert_eq!((view.finish().err(), view.blind()), (blind, blind), "piece {short}");
+        let decision = DriveRule::new(DriveConfig::default()).decide(&view, 500).decision;
+        assert_eq!(decision, blind.map_or(Decision::Clear, Decision::Blind), "piece {short}");
+        assert_eq!(view.sectors(), if blind.is_some() { 0 } else { 16 }, "piece {short}");
+    }
+}
+
+#[test]
+fn rows_of_which_anything_is_too_short_are_lost() {
+    let map = Map::of(rig(), [160, 120], |_, v| floor(&rig(), 0.3, 0.1, v));
+    for (lengths, is_lost) in [
+        ([160, 160, 160], false),
+        ([160, 160, 0], false),
+        ([159, 160, 160], true),
+        ([160, 159, 160], true),
+        ([160, 160, 159], true),
+    ] {
+        let mut finder = map.finder(&ObstacleConfig::default());
+        for (y, (disparities, flags)) in map.disparities.chunks(160).zip(map.flags.chunks(160)).enumerate() {
+            let [d, f, sure] = lengths;
+            finder.push(y, &disparities[..d], &flags[..f], &[200; 160][..sure]);
+        }
+        let blind = Some(BlindReason::RowsLost).filter(|_| is_lost);
+        assert_eq!(finder.finish().err(), blind, "{lengths:?}");
     }
 }

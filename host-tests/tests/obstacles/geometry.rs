@@ -27,7 +27,7 @@ fn the_ground_has_the_height_and_pitch_of_the_camera() {
         let mut finder = map.finder(&ObstacleConfig::default());
         map.rows(&mut finder, |_| true);
         assert_eq!(finder.finish(), Ok(()), "{height_m} m, {pitch} rad");
-        let ground = finder.as_mut_view().ground().expect("a ground");
+        let ground = finder.as_mut_view().plane().expect("a ground");
         let off = f64::from(ground.pitch_rad()) - pitch;
         assert!(off.abs() < 0.5_f64.to_radians(), "{height_m} m, {pitch} rad: {off}");
         let height_off = f64::from(ground.height_mm) / 1000.0 / height_m - 1.0;
@@ -131,7 +131,7 @@ fn a_table_ends_where_it_ends() {
     map.rows(&mut finder, |_| true);
     assert_eq!(finder.finish(), Ok(()));
     let view = finder.as_mut_view();
-    assert!((280..320).contains(&view.ground().expect("the table").height_mm), "{:?}", view.ground());
+    assert!((280..320).contains(&view.plane().expect("the table").height_mm), "{:?}", view.plane());
     for i in 0..view.sectors() {
         let sector = view.sector(i);
         assert_eq!(sector.state, SectorState::Drop, "{sector:?}");

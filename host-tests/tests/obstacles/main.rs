@@ -1,6 +1,7 @@
 //! Obstacles, ground and free space: the core beside its naive twin (`twins`), worked geometry (`geometry`),
 //! what counts (`evidence`), rendered scenes (`scenes`) and faulty frames (`faults`).
 
+mod decisions;
 mod evidence;
 mod faults;
 mod geometry;

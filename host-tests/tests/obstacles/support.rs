@@ -50,8 +50,13 @@ impl Map {
 
     /// Gives the rows of a frame that `keep` keeps to a finder, without finishing it.
     pub fn rows(&self, finder: &mut Finder, keep: impl Fn(usize) -> bool) {
-        let width = usize::from(self.size[0]);
         finder.begin();
+        self.rows_of_begun(finder, keep);
+    }
+
+    /// The same of a frame that is begun.
+    pub fn rows_of_begun(&self, finder: &mut Finder, keep: impl Fn(usize) -> bool) {
+        let width = usize::from(self.size[0]);
         for y in (0..usize::from(self.size[1])).filter(|&y| keep(y)) {
             let row = y * width..(y + 1) * width;
             let confidences = if self.confidences.is_empty() { &[] } else { &self.confidences[row.clone()] };

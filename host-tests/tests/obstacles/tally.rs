@@ -4,7 +4,7 @@
 //! in its columns, or half a window beside them.
 
 use nalgebra::{Rotation3, Vector3};
-use stereopsis::obstacles::{Decision, DriveConfig, DriveRule, ObstaclesView, StixelKind};
+use stereopsis::obstacles::{Decision, DriveConfig, DriveRule, Ground, ObstaclesView, StixelKind};
 use stereopsis_host::scene::{RobotScene, Scene};
 
 /// Speed of the robot, mm/s: it looks 1.03 m ahead.
@@ -54,9 +54,9 @@ fn is_alarm(frame: &ObstaclesView<'_>, nearest: &[f64]) -> bool {
     })
 }
 
-/// How far the ground's pitch is off, degrees.
-fn tilt_deg(frame: &ObstaclesView<'_>) -> Option<f64> {
-    Some((f64::from(frame.ground()?.pitch_rad()) - RobotScene::PITCH_RAD).to_degrees())
+/// How far a plane's pitch is off, degrees.
+fn tilt_deg(plane: &Ground) -> f64 {
+    (f64::from(plane.pitch_rad()) - RobotScene::PITCH_RAD).to_degrees().abs()
 }
 
 /// What came of many frames of a scene.
@@ -64,7 +64,9 @@ fn tilt_deg(frame: &ObstaclesView<'_>) -> Option<f64> {
 pub struct Tally {
     pub frames: usize,
     pub alarms: usize,
-    pub tilts: Vec<f64>,
+    /// How far the pitches are off of the grounds that were told, and of all planes, degrees.
+    pub told: Vec<f64>,
+    pub planes: Vec<f64>,
     /// Clear, slow, stop, blind.
     pub decisions: [usize; 4],
 }
@@ -73,7 +75,8 @@ impl Tally {
     pub fn take(&mut self, frame: &ObstaclesView<'_>, nearest: &[f64]) {
         self.frames += 1;
         self.alarms += usize::from(is_alarm(frame, nearest));
-        self.tilts.extend(tilt_deg(frame).map(f64::abs));
+        self.told.extend(frame.ground().as_ref().map(tilt_deg));
+        self.planes.extend(frame.plane().as_ref().map(tilt_deg));
         let place = match DriveRule::new(DriveConfig::default()).decide(frame, SPEED).decision {
             Decision::Clear => 0,
             Decision::Slow(_) => 1,
@@ -83,11 +86,13 @@ impl Tally {
         self.decisions[place] += 1;
     }
 
+    /// The most that a ground which was told is off, degrees.
     pub fn most_tilt(&self) -> f64 {
-        self.tilts.iter().copied().fold(0.0, f64::max)
+        self.told.iter().copied().fold(0.0, f64::max)
     }
 
-    pub fn within(&self) -> usize {
-        self.tilts.iter().filter(|tilt| **tilt <= 0.5).count()
+    /// How many pitches are within half a degree.
+    pub fn within(tilts: &[f64]) -> usize {
+        tilts.iter().filter(|tilt| **tilt <= 0.5).count()
     }
 }

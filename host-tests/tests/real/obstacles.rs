@@ -69,7 +69,7 @@ fn the_ground_is_that_of_the_truth() {
     let points: Vec<_> = points.collect();
     for method in [MethodName::Block, MethodName::Sgm] {
         let record = found(&rig, [left.clone(), right.clone()], method, 70);
-        let ground = record.ground.expect("a ground");
+        let ground = record.ground.expect("a ground whose pitch is sure");
         let (pitch, height) = (f64::from(ground.pitch_deg).to_radians(), f64::from(ground.height_m));
         // From what was found on, all points within a px, until they are the plane's own.
         let mut fit = Vector3::new(b / height * f * pitch.sin(), 0.0, b / height * pitch.cos());
@@ -99,7 +99,8 @@ fn roads_are_found() {
         let rig = RectifiedRig::new(645.0, 0.57, 671.5, 195.0).expect("a rig");
         for method in [MethodName::Block, MethodName::Sgm] {
             let record = found(&rig, ["left", "right"].map(file), method, 128);
-            let ground = record.ground.unwrap_or_else(|| panic!("{name}, {method:?}: no ground"));
+            let ground =
+                record.ground.unwrap_or_else(|| panic!("{name}, {method:?}: no ground that is sure"));
             println!("{name} {method:?}: {ground:?} {}", record.line());
             assert!((1.45..1.75).contains(&ground.height_m), "{name}, {method:?}: {ground:?}");
             assert!((3.0..7.0).contains(&ground.pitch_deg), "{name}, {method:?}: {ground:?}");

@@ -150,7 +150,9 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
         kernel: None,
         threads: 1,
     };
-    input::config(&args.range, &options, header.width, header.height)
+    let config = input::config(&args.range, &options, header.width, header.height)?;
+    // In the sky obstacles are asked to be sure.
+    Ok(Config { confidence: args.watch.obstacles, ..config })
 }
 
 fn play(

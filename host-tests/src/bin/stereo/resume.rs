@@ -62,15 +62,19 @@ fn picture(path: &Path) -> Result<RgbImage, Failure> {
     Ok(image::open(path).map_err(|e| failed(path, &e))?.into_rgb8())
 }
 
-/// The map that a folder's files hold, to the bit, without deviations and confidences.
+/// The map that a folder's files hold, to the bit, without deviations.
 fn map(folder: &Path) -> Result<DisparityMap, Failure> {
-    let [disparity, flags] = ["disparity.pfm", "flags.png"].map(|name| folder.join(name));
+    let disparity = folder.join("disparity.pfm");
     let bytes = fs::read(&disparity).map_err(|e| failed(&disparity, &e))?;
     let pixels = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&disparity, &e))?;
-    let bits = image::open(&flags).map_err(|e| failed(&flags, &e))?.into_luma8();
-    if bits.len() != pixels.values.len() {
-        return Err(failed(&flags, &"is not of the size of disparity.pfm"));
-    }
+    let bytes = |name: &str| {
+        let path = folder.join(name);
+        let bytes = image::open(&path).map_err(|e| failed(&path, &e))?.into_luma8().into_raw();
+        if bytes.len() != pixels.values.len() {
+            return Err(failed(&path, &"is not of the size of disparity.pfm"));
+        }
+        Ok(bytes)
+    };
     let steps = |&px: &f32| {
         // Disparities are whole steps.
         if px.is_finite() {
@@ -81,7 +85,8 @@ fn map(folder: &Path) -> Result<DisparityMap, Failure> {
     };
     let mut map = DisparityMap::new(pixels.width, pixels.height);
     map.disparity = pixels.values.iter().map(steps).collect();
-    map.flags = bits.iter().map(|&bits| PixelFlags::from_bits(bits)).collect();
+    map.flags = bytes("flags.png")?.into_iter().map(PixelFlags::from_bits).collect();
+    map.confidence = bytes("confidence.png")?;
     Ok(map)
 }
 

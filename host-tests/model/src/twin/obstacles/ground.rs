@@ -16,6 +16,8 @@ pub struct Line {
     pub variance: i128,
     /// Height of the camera above the plane, mm.
     pub height_mm: i128,
+    /// Deviation of the tangent of the camera's pitch, 65536ths.
+    pub pitch_sigma: i128,
 }
 
 impl Line {
@@ -36,14 +38,20 @@ impl Line {
     }
 
     /// A plane that a camera can see.
-    fn new(scene: &Scene<'_>, [level, slope, lean]: [i128; 3], variance: i128) -> Option<Self> {
+    pub(super) fn new(scene: &Scene<'_>, [level, slope, lean]: [i128; 3], variance: i128) -> Option<Self> {
         let inclination = (level + slope * scene.cy_halves / 2) * 16 / scene.focal_16ths;
         if !(1..1 << 30).contains(&slope) || inclination.abs() >= 1 << 30 || lean.abs() > slope {
             return None;
         }
         let norm = ((slope * slope + lean * lean + inclination * inclination) as u128).isqrt() as i128;
         let height_mm = scene.baseline_16ths * 131_072 / norm;
-        (height_mm <= 65_535).then_some(Self { level, slope, lean, variance, height_mm })
+        (height_mm <= 65_535).then_some(Self { level, slope, lean, variance, height_mm, pitch_sigma: 0 })
+    }
+
+    /// Deviation of the pitch where the parallax at the horizon has a variance, 256ths of squared steps.
+    pub(super) fn pitch_sigma(&self, scene: &Scene<'_>, variance: i128) -> i128 {
+        // In sixteenths of a step, as the focal length is in sixteenths of a px: they cancel out.
+        (variance.isqrt() * 65_536 * 65_536 / (self.slope * scene.focal_16ths)).min(65_535)
     }
 
     /// The plane with the nearest height that is searched, and the same parallax at a half-row; none is given
@@ -181,7 +189,28 @@ fn refined(
     let variance = 1 + (4 * rest / (n * n)).min(1 << 20);
     let fitted =
         Line::new(scene, [line.level + level, line.slope + 2 * per_half, line.lean + lean], variance)?;
-    Some((fitted.bounded(scene, a / n)?, near.last()?.row - near.first()?.row))
+    let fitted = fitted.bounded(scene, a / n)?;
+    let pitch_sigma = fitted.pitch_sigma(scene, at_horizon(scene, &fitted, [n, a / n, aa, rest]));
+    Some((Line { pitch_sigma, ..fitted }, near.last()?.row - near.first()?.row))
+}
+
+/// Variance of a plane's parallax at the horizon, 256ths of squared steps, by its number of cells, their mean
+/// half-row, the squares of half-rows about it, and what is left of the squares of parallaxes.
+fn at_horizon(scene: &Scene<'_>, line: &Line, [n, mean, rows, rest]: [i128; 4]) -> i128 {
+    let sigma = i128::from(scene.config.sigma_steps);
+    let answer = (4 * 256 * rest / n).max(4 * 256 * sigma * sigma).min(1 << 28);
+    let parallax = line.upright(mean).abs().min(1 << 17);
+    let to_horizon = (2 * 65_536 * parallax / line.slope).min(65_536);
+    let by_fit = answer * to_horizon * to_horizon / rows;
+    let slope = match scene.config.ground {
+        GroundSource::Searched { least_height_mm, most_height_mm, .. } => {
+            let width = i128::from(most_height_mm) - i128::from(least_height_mm);
+            let share = (256 * 2 * width / (7 * line.height_mm)).min(16 * 256);
+            by_fit.min((parallax * share).pow(2) / 256)
+        }
+        _ => by_fit,
+    };
+    answer / n + slope
 }
 
 /// The line through two cells at least an eighth of the rows, and two, apart, which leans as a carried one.
@@ -231,8 +260,10 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         }
     }
     let line = best?.1;
-    // From a bin that is wider than 2 px, or from one px, halved down to half a px.
-    let mut band = if bin(scene) > 64 { bin(scene).min(512) } else { 32 };
+    // From a bin that is wider than 2 px, or from 2 px, or from 1 px where a ground was known, halved down to
+    // half a px.
+    let first = if carried.is_some() { 32 } else { 64 };
+    let mut band = if bin(scene) > 64 { bin(scene).min(512) } else { first };
     let (mut line, mut within) = (line, None);
     let answered = cells.iter().flatten().count() as i128;
     let fewest = (answered / 16).max(8);
@@ -243,30 +274,4 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
     }
     let (band, reach) = within?;
     (band <= 64 && reach >= (rows / 8).max(2) && line.is_allowed(scene)).then_some(line)
-}
-
-/// Averages what a frame measured into what was carried.
-pub fn carry(scene: &Scene<'_>, carried: &mut (Option<Line>, u32), measured: Option<Line>) {
-    let rows = scene.size()[1];
-    let old = carried.0.map(|line| Line { variance: line.variance + 64, ..line });
-    carried.1 = if measured.is_some() { 0 } else { carried.1 + 1 };
-    carried.0 = match (old, measured) {
-        (None, measured) => measured,
-        (Some(old), None) => (carried.1 <= 8).then_some(old),
-        (Some(old), Some(new)) => {
-            let both = old.variance + new.variance;
-            let agree = [rows / 2, rows - 1].iter().all(|&row| {
-                [0, scene.size()[0] - 1].iter().all(|&column| {
-                    let at = |line: &Line| line.at(scene.halves(row), scene.right(column));
-                    (at(&new) - at(&old)).pow(2) <= 9 * both
-                })
-            });
-            let gain = 256 * old.variance / both;
-            let mix = |old: i128, new: i128| old + ((new - old) * gain).div_euclid(256);
-            let variance = (old.variance * (256 - gain) / 256).max(1);
-            let plane = [mix(old.level, new.level), mix(old.slope, new.slope), mix(old.lean, new.lean)];
-            let mixed = Line::new(scene, plane, variance);
-            if agree { mixed.or(Some(new)) } else { Some(new) }
-        }
-    };
 }

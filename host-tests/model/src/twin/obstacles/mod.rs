@@ -1,21 +1,29 @@
-//! Obstacles from whole maps of disparity: cells, the line of the ground, stixels and sectors, each in its
-//! plainest form.
+//! Obstacles from whole maps of disparity: cells, the line of the ground, stixels, sectors and decisions,
+//! each in its plainest form.
 //!
 //! * [`Scene`]: a map, its rig and its limits. [`find`]: what is in it.
-//! * `ground`: the line of the ground by counting cells and by least squares. `stixels`: the cheapest labels
-//!   of a column by trying all predecessors. `surfaces`: those of columns by flooding. `sectors`: the nearest
-//!   of each by looking at all columns.
+//! * `ground`: the line of the ground by counting cells and by least squares. `carried`: the same over
+//!   frames. `stixels`: the cheapest labels of a column by trying all predecessors. `surfaces`: those of
+//!   columns by flooding. `sectors`: the nearest of each by looking at all columns.
+//! * `watchdog`: whether a frame is to be trusted. `held`: what counts of all frames so far. `drive`: a
+//!   decision from all columns of a corridor.
 
+mod carried;
+mod drive;
 mod ground;
+mod held;
 mod sectors;
 mod stixels;
 mod surfaces;
+mod watchdog;
 
+pub use drive::{Decided, Driver};
 pub use ground::Line;
+pub use held::{counts, free_space};
 pub use sectors::{Sector, sectors};
 pub use stixels::{Kind, Standing};
 
-use stereopsis::obstacles::{GroundSource, ObstacleConfig};
+use stereopsis::obstacles::{BlindReason, GroundSource, ObstacleConfig};
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// A map of disparities with what is needed to find obstacles in it.
@@ -47,11 +55,17 @@ pub struct Scene<'a> {
     pub flags: &'a [PixelFlags],
     /// Confidences, or none.
     pub confidences: &'a [u8],
+    /// Whether each row of pixels came.
+    pub came: &'a [bool],
+    /// What the monitor of the cameras says against them.
+    pub cameras: Option<BlindReason>,
 }
 
 /// What is in a map.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Found {
+    /// Why the frame is not to be trusted, if it is not.
+    pub blind: Option<BlindReason>,
     /// The disparity of each cell, row by row.
     pub cells: Vec<Option<i128>>,
     /// The ground, with those of earlier frames averaged in.
@@ -105,7 +119,8 @@ impl Scene<'_> {
             let sky = if self.is_sky(i / self.width, ground) { self.config.sky_confidence } else { 0 };
             let least = self.config.min_confidence.max(sky);
             let sure = self.confidences.is_empty() || self.confidences[i] >= least;
-            self.disparities[i].is_some() && !self.flags[i].intersects(doubtful) && sure
+            let comes = self.came[i / self.width] && self.disparities[i].is_some();
+            comes && !self.flags[i].intersects(doubtful) && sure
         };
         pixels.filter(counts).map(|i| i128::from(self.disparities[i].raw())).collect()
     }
@@ -139,14 +154,15 @@ pub fn find(scene: &Scene<'_>, carried: &mut (Option<Line>, u32)) -> Found {
         .flat_map(|row| (0..columns).map(move |column| (column, row)))
         .map(|(column, row)| scene.cell(column, row, carried.0))
         .collect();
+    let blind = watchdog::blind(scene, &cells);
     let ground = match scene.config.ground {
         GroundSource::Absent => None,
         _ => {
-            let measured = ground::fit(scene, &cells, carried.0);
-            ground::carry(scene, carried, measured);
+            let measured = if blind.is_none() { ground::fit(scene, &cells, carried.0) } else { None };
+            carried::carry(scene, carried, measured);
             carried.0
         }
     };
     let columns = surfaces::stixels(scene, &cells, ground);
-    Found { cells, ground, columns }
+    Found { blind, cells, ground, columns }
 }

@@ -36,12 +36,12 @@ impl Scene<'_> {
         self.bearing(column as f64 * width + (width - 1.0) / 2.0)
     }
 
-    fn depth_mm(&self, parallax: i128) -> i128 {
+    pub(super) fn depth_mm(&self, parallax: i128) -> i128 {
         if parallax <= 0 { 65_535 } else { ((self.millimetre_steps + parallax / 2) / parallax).min(65_535) }
     }
 }
 
-/// All sectors of a frame that is to be trusted, from the left.
+/// All sectors of a frame, from the left; all are blind where it is not to be trusted.
 pub fn sectors(scene: &Scene<'_>, found: &Found) -> Vec<Sector> {
     let [columns, _] = scene.size();
     let count = i128::from(scene.config.sectors);
@@ -62,6 +62,19 @@ pub fn sectors(scene: &Scene<'_>, found: &Found) -> Vec<Sector> {
 
 /// A sector of these columns.
 fn one(scene: &Scene<'_>, found: &Found, inside: &[usize], middle_mrad: i128) -> Sector {
+    let mut sector = Sector {
+        state: SectorState::Blind,
+        bearing_mrad: middle_mrad,
+        depth_mm: 0,
+        sigma_mm: 0,
+        range_mm: 0,
+        pixels: 0,
+        height_mm: 0,
+        seen_mm: 0,
+    };
+    if found.blind.is_some() {
+        return sector;
+    }
     let [_, rows] = scene.size();
     let seen = |x: usize, standing: &Standing| {
         let at = |line: Line| line.at(scene.halves(standing.seen), scene.right(x));
@@ -69,16 +82,10 @@ fn one(scene: &Scene<'_>, found: &Found, inside: &[usize], middle_mrad: i128) ->
         (standing.seen < rows).then(|| ground.unwrap_or(65_535))
     };
     let seen: Vec<_> = inside.iter().filter_map(|&x| seen(x, &found.columns[x])).collect();
-    let mut sector = Sector {
-        state: if 2 * seen.len() > inside.len() { SectorState::Free } else { SectorState::Blind },
-        bearing_mrad: middle_mrad,
-        depth_mm: 0,
-        sigma_mm: 0,
-        range_mm: 0,
-        pixels: 0,
-        height_mm: 0,
-        seen_mm: seen.iter().copied().min().unwrap_or(0),
-    };
+    sector.seen_mm = seen.iter().copied().min().unwrap_or(0);
+    if 2 * seen.len() > inside.len() {
+        sector.state = SectorState::Free;
+    }
     let mut standing: Vec<_> =
         inside.iter().filter_map(|&x| Some((x, found.columns[x].found.as_ref()?))).collect();
     // Of equals the left one.

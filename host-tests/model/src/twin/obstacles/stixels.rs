@@ -55,6 +55,15 @@ pub(super) struct Column<'a> {
     pub(super) right: i128,
 }
 
+impl<'a> Column<'a> {
+    /// A column of a frame's cells.
+    pub(super) fn new(scene: &'a Scene<'a>, cells: &[Option<i128>], ground: Option<Line>, x: usize) -> Self {
+        let [columns, rows] = scene.size();
+        let parallaxes = (0..rows).map(|y| cells[y * columns + x].map(|d| d + scene.offset)).collect();
+        Self { scene, ground, parallaxes, right: scene.right(x) }
+    }
+}
+
 impl Column<'_> {
     fn tolerance(&self) -> i128 {
         let sigma = i128::from(self.scene.config.sigma_steps);
@@ -71,6 +80,21 @@ impl Column<'_> {
             (line.upright(self.scene.halves(row)).max(0), i128::from(self.scene.config.obstacle_mm));
         let left = line.height_mm - up;
         if left > 0 { (at * up / left).min(1 << 21).max(self.tolerance()) } else { 1 << 21 }
+    }
+
+    /// The least that the ground's parallax is at a row, where ground can be told.
+    fn lowest(&self, line: &Line, row: usize) -> i128 {
+        // The limits of all columns are those of the principal point's.
+        let at = line.upright(self.scene.halves(row)).max(0);
+        let down = i128::from(self.scene.config.drop_mm);
+        let ground = line.at(self.scene.halves(row), self.right);
+        ground - (at * down / (line.height_mm + down)).max(self.tolerance())
+    }
+
+    /// Whether an answer is not told from ground, or from what is too far to be told.
+    pub(super) fn may_be_ground(&self, line: &Line, row: usize, parallax: i128) -> bool {
+        let is_far = line.at(self.scene.halves(row), self.right) < self.scene.farthest();
+        parallax <= self.highest(line, row) && (is_far || parallax >= self.lowest(line, row))
     }
 
     /// The most that the ground's parallax is at a row.
@@ -119,10 +143,7 @@ impl Column<'_> {
         };
         let ground = line.at(self.scene.halves(row), self.right);
         let (height, highest) = (line.height_mm, self.highest(&line, row));
-        // The limits of all columns are those of the principal point's.
-        let at = line.upright(self.scene.halves(row)).max(0);
-        let down = i128::from(config.drop_mm);
-        let lowest = ground - (at * down / (height + down)).max(self.tolerance());
+        let lowest = self.lowest(&line, row);
         let headroom = i128::from(config.headroom_mm);
         let overhead = headroom < 65_535 && height * (parallax - ground) > headroom * parallax;
         match kind {

@@ -7,12 +7,11 @@ use std::ops::RangeInclusive;
 /// What stands in each column: the nearest segment that belongs to a surface of enough pixels, where a speck
 /// makes room for the next segment behind it twice.
 pub fn stixels(scene: &Scene<'_>, cells: &[Option<i128>], ground: Option<Line>) -> Vec<Standing> {
-    let [columns, rows] = scene.size();
+    let [columns, _] = scene.size();
     let mut seen = Vec::new();
     let all: Vec<_> = (0..columns)
         .map(|x| {
-            let parallaxes = (0..rows).map(|y| cells[y * columns + x].map(|d| d + scene.offset)).collect();
-            let column = Column { scene, ground, parallaxes, right: scene.right(x) };
+            let column = Column::new(scene, cells, ground, x);
             let labels = column.labels();
             let mut segments = column.segments(&labels);
             segments.retain(|segment| segment.parallax > 0);

@@ -109,7 +109,7 @@ impl<'a> ObstaclesView<'a> {
     /// A finder in the caller's memory: `filling`, `columns` and `bearings` have one of each for every
     /// column of cells, `labels` has one and `bins` has [`Self::BINS`] for every row of cells, `cells` holds
     /// all cells of a frame. It does not matter what is in them before [`Self::start`], which names what is
-    /// too short; later views need what the last one left, and one that has less is as if it were not started.
+    /// too short; later views need what the last one left, and one that has less is as if not started.
     pub fn new(
         state: &'a mut ObstaclesState,
         cells: &'a mut [Disparity],

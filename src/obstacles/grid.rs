@@ -62,27 +62,21 @@ impl Filling {
         }
     }
 
-    /// Adds a row's pixels of the cell, as far as they count, and returns the bits of all flags. Confidences
-    /// may be empty.
-    // Apart from the loop over cells of four pixels without a flag.
-    #[inline(never)]
-    fn take(
-        &mut self,
-        disparities: &[Disparity],
-        flags: &[PixelFlags],
-        confidences: &[u8],
-        min_confidence: u8,
-    ) -> u8 {
+    /// Adds a row's pixels of the cell, as far as they count, and returns the bits of all flags.
+    #[inline(always)]
+    fn take(&mut self, disparities: &[Disparity], flags: &[PixelFlags]) -> u8 {
         let [mut first, _] = self.0;
-        for (place, (d, flags)) in disparities.iter().zip(flags).enumerate().step_by(3) {
-            let is_sure = confidences.get(place).is_none_or(|&sure| sure >= min_confidence);
-            let counts = d.is_some() && is_sure && !flags.intersects(LEFT_OUT);
-            if counts && !first.take(d.raw()) {
+        let mut all = 0;
+        for flags in flags {
+            all |= flags.bits();
+        }
+        for (d, flags) in disparities.iter().zip(flags).step_by(3) {
+            if d.is_some() && !flags.intersects(LEFT_OUT) && !first.take(d.raw()) {
                 self.take_second(d.raw());
             }
         }
         self.0[0] = first;
-        flags.iter().fold(0, |all, flags| all | flags.bits())
+        all
     }
 
     /// Adds the pixels that count of four without a flag that leaves them out.
@@ -120,8 +114,17 @@ pub(super) fn fill(
 ) -> PixelFlags {
     let width = cell_width.max(1);
     let mut all = 0;
-    let are_asked = !confidences.is_empty() && min_confidence > 0;
-    if let (4, false) = (width, are_asked) {
+    if !confidences.is_empty() && min_confidence > 0 {
+        let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
+        for (cell, ((disparities, flags), sure)) in
+            cells.iter_mut().zip(pixels.zip(confidences.chunks_exact(width)))
+        {
+            for (place, ((d, flags), &confidence)) in disparities.iter().zip(flags).zip(sure).enumerate() {
+                let counts = confidence >= min_confidence && place.is_multiple_of(3);
+                all |= cell.take(&[if counts { *d } else { Disparity::NONE }], &[*flags]);
+            }
+        }
+    } else if let 4 = width {
         // The default width, unrolled, with four flags in a word.
         const LEFT_OUT_4: u32 = 0x0100_0001 * LEFT_OUT.bits() as u32;
         let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
@@ -132,15 +135,14 @@ pub(super) fn fill(
             if word & LEFT_OUT_4 == 0 {
                 cell.take_four(disparities);
             } else {
-                cell.take(disparities, flags, &[], 0);
+                cell.take(disparities, flags);
             }
         }
         all = all_4.to_le_bytes().into_iter().fold(0, |all, bits| all | bits);
     } else {
         let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
-        let mut sure = confidences.chunks_exact(width);
         for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
-            all |= cell.take(disparities, flags, sure.next().unwrap_or_default(), min_confidence);
+            all |= cell.take(disparities, flags);
         }
     }
     PixelFlags::from_bits(all)
@@ -156,8 +158,6 @@ mod tests {
         cell.take(
             &[320, 0, 0, 330, 0, 0, 640, 0, 0, 641, 0, 0, 900, 0, 0, 322].map(Disparity::from_raw),
             &[PixelFlags::CLEAR; 16],
-            &[],
-            0,
         );
         // Quarters of 8 pixels: (320 + 330 + 322) / 3 and (640 + 641) / 2 rounded up.
         assert_eq!(cell.answer(8), Disparity::from_raw(641));

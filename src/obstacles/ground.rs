@@ -256,9 +256,10 @@ impl CarriedGround {
     ///
     /// The deviations of pitches are averaged as well: what a texture does to a fit it does in all frames.
     pub(super) fn update(&mut self, measured: Option<Ground>, at: [(i64, i64); 4], rig: &RigNumbers) {
-        let (Some(old), Some(new)) = (self.predicted(rig), measured) else {
+        let carried = self.predicted(rig);
+        let (Some(old), Some(new)) = (carried, measured) else {
             self.age = if measured.is_some() { 0 } else { self.age.saturating_add(1) };
-            self.ground = measured.or(self.predicted(rig).filter(|_| self.age <= Self::MOST_HELD));
+            self.ground = measured.or(carried.filter(|_| self.age <= Self::MOST_HELD));
             return;
         };
         self.age = 0;

@@ -11,6 +11,8 @@ pub(super) const BAND: i32 = 1 << FINEST;
 const FINEST: u32 = 4;
 /// Exponent of the widest band in which a ground may be found: 2 px.
 const WIDEST: u32 = FINEST + 2;
+/// Most cells whose errors are independent: more have in common what the matcher and the ground do.
+const INDEPENDENT: i64 = 512;
 /// Most that the variance of an answer may be, 256ths of squared steps, so that no product wraps.
 const MOST_VARIANCE: i64 = 1 << 28;
 
@@ -46,6 +48,7 @@ struct Sums {
 /// ground and of the picture a matching window sees more of the one side.
 fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
     let mut sums = Sums::default();
+    let per_column = 16 * i64::from(plane.lean) * cells.cell_width;
     for row in 1..cells.rows.saturating_sub(1) {
         let around = [row - 1, row, row + 1];
         let [above, here, below] = around.map(|row| {
@@ -55,15 +58,19 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
         if here.1 >> 8 < cells.farthest {
             continue;
         }
-        let off = |d: Disparity, expected: i32| {
-            let off = i32::from(d.raw()) + cells.offset - (expected >> 8);
+        // The plane in 2^20ths of a step: at a row, and what a column has more. Both are below 2^50.
+        let off = |d: Disparity, expected_256ths: i32, beside: i64| {
+            let expected = (i64::from(expected_256ths) << 12) + beside;
+            let off = i32::from(d.raw()) + cells.offset - (expected >> 20) as i32;
             (d.is_some() && off.abs() <= band).then_some(off)
         };
+        let mut next = i64::from(plane.lean) * cells.right_16ths(0);
         let (mut n, mut p, mut x, mut pp, mut xp, mut xx) = (0_i32, 0_i32, 0_i32, 0_i32, 0_i64, 0_i32);
         for (column, ((&d, &d_above), &d_below)) in (0..).zip(here.0.iter().zip(above.0).zip(below.0)) {
-            let beside = plane.beside_256ths(cells.right_16ths(column as usize));
-            let Some(off_here) = off(d, here.1 + beside) else { continue };
-            if off(d_above, above.1 + beside).is_none() || off(d_below, below.1 + beside).is_none() {
+            let beside = next;
+            next += per_column;
+            let Some(off_here) = off(d, here.1, beside) else { continue };
+            if off(d_above, above.1, beside).is_none() || off(d_below, below.1, beside).is_none() {
                 continue;
             }
             (n, p, pp) = (n + 1, p + off_here, pp + off_here * off_here);
@@ -84,8 +91,12 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
     sums
 }
 
-/// Sums about the means, and what the fit leaves of the squares.
-struct Spread {
+/// A fitted plane with the sums about the means, and what the fit leaves of the squares.
+#[derive(Clone, Copy)]
+struct Fitted {
+    plane: Ground,
+    /// Number of rows that the cells reach over.
+    reach: usize,
     n: i64,
     /// Mean half-row.
     halves: i64,
@@ -95,9 +106,9 @@ struct Spread {
     rest: i64,
 }
 
-/// Least squares over the cells within `band` of a plane, of which there have to be `fewest`, and the number
-/// of rows that they reach over. The roll stays where they reach over too little of the picture's width. The
-/// variance is four times that of the mean: cells side by side share windows.
+/// Least squares over the cells within `band` of a plane, of which there have to be `fewest`. The roll stays
+/// where they reach over too little of the picture's width. The variance is four times that of the mean:
+/// cells side by side share windows.
 fn refined(
     cells: &Cells<'_>,
     plane: &Ground,
@@ -105,7 +116,7 @@ fn refined(
     fewest: i64,
     config: &ObstacleConfig,
     rig: &RigNumbers,
-) -> Option<(Ground, usize)> {
+) -> Option<Fitted> {
     let s = sums(cells, plane, band);
     if s.n < fewest {
         return None;
@@ -133,11 +144,10 @@ fn refined(
     let mean = (s.p << 16).checked_div(s.n)? - 0x8000;
     let level = plane.level + mean - (per_half * s.a).checked_div(s.n)? - ((lean * right) >> 4);
     let (slope, lean) = (plane.slope + 2 * per_half, i64::from(plane.lean) + lean);
-    let spread = Spread { n: s.n, halves: s.a.checked_div(s.n)?, rows: aa, rest };
-    let fitted = Ground::from_line(level, slope, lean, variance as u32, rig)?;
-    let fitted = fitted.bounded(&config.ground, spread.halves, rig)?;
-    let pitch_sigma = rig.pitch_sigma(fitted.slope, at_horizon(&spread, &fitted, config)?)?;
-    Some((Ground { pitch_sigma, ..fitted }, s.last_row - s.first_row?))
+    let halves = s.a.checked_div(s.n)?;
+    let plane = Ground::from_line(level, slope, lean, variance as u32, rig)?;
+    let plane = plane.bounded(&config.ground, halves, rig)?;
+    Some(Fitted { plane, reach: s.last_row - s.first_row?, n: s.n, halves, rows: aa, rest })
 }
 
 /// Variance of a plane's parallax at the horizon, 256ths of squared steps: that of the mean, and that of the
@@ -145,10 +155,12 @@ fn refined(
 ///
 /// Answers have at least the variance of the limits, as what all of them are off by does not show between
 /// them. The slope has at most the deviation of the heights that are allowed, as if all were as likely.
-fn at_horizon(s: &Spread, plane: &Ground, config: &ObstacleConfig) -> Option<u64> {
+fn at_horizon(s: &Fitted, config: &ObstacleConfig) -> Option<u64> {
+    let plane = &s.plane;
     let sigma = i64::from(config.sigma_steps);
     // Four times, as in the variance of the mean.
     let answer = ((4 * s.rest) << 8).checked_div(s.n)?.max((4 * sigma * sigma) << 8).min(MOST_VARIANCE);
+    let answer = (answer * s.n).checked_div(s.n.min(INDEPENDENT))?.min(MOST_VARIANCE);
     let parallax = i64::from(plane.parallax_256ths(s.halves) >> 8).abs().min(1 << 17);
     let halves = ((2 * parallax) << 16).checked_div(plane.slope)?.min(1 << 16);
     let mut slope = (answer * halves * halves).checked_div(s.rows)?;
@@ -176,11 +188,13 @@ pub(super) fn fitted(
     let all = cells.columns * cells.rows;
     let answered = cells.cells.iter().take(all).filter(|d| d.is_some()).count() as i64;
     let fewest = (answered / 16).max(8);
-    let (mut plane, mut within) = (plane, None);
+    let (mut plane, mut last) = (plane, None);
     for band in bands {
-        let Some((fitted, reach)) = refined(cells, &plane, band, fewest, config, rig) else { break };
-        (plane, within) = (fitted, Some((band, reach)));
+        let Some(fitted) = refined(cells, &plane, band, fewest, config, rig) else { break };
+        (plane, last) = (fitted.plane, Some((band, fitted)));
     }
-    let (band, reach) = within?;
-    (band <= 1 << WIDEST && reach >= cells.span() && plane.is_within(&config.ground)).then_some(plane)
+    let (band, fitted) = last?;
+    let is_good = band <= 1 << WIDEST && fitted.reach >= cells.span() && plane.is_within(&config.ground);
+    let pitch_sigma = rig.pitch_sigma(plane.slope, at_horizon(&fitted, config)?)?;
+    is_good.then_some(Ground { pitch_sigma, ..plane })
 }

@@ -199,6 +199,8 @@ fn refined(
 fn at_horizon(scene: &Scene<'_>, line: &Line, [n, mean, rows, rest]: [i128; 4]) -> i128 {
     let sigma = i128::from(scene.config.sigma_steps);
     let answer = (4 * 256 * rest / n).max(4 * 256 * sigma * sigma).min(1 << 28);
+    // As if no more than 512 cells were independent.
+    let answer = (answer * n / n.min(512)).min(1 << 28);
     let parallax = line.upright(mean).abs().min(1 << 17);
     let to_horizon = (2 * 65_536 * parallax / line.slope).min(65_536);
     let by_fit = answer * to_horizon * to_horizon / rows;

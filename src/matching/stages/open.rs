@@ -134,6 +134,10 @@ fn filled(smooth: u32, seeds: u32) -> u32 {
 #[inline(never)]
 pub(super) fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
     let words = part(open, ..words(width)).as_chunks().0;
+    // Mostly none is.
+    if words.iter().all(|word| *word == [0; 4]) {
+        return;
+    }
     let (mut before, mut first) = (0, 0);
     for (number, word) in words.iter().enumerate() {
         let here = u32::from_le_bytes(*word);

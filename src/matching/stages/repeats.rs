@@ -17,7 +17,8 @@ use crate::imaging::Noise;
 use crate::matching::backend::loops::{fill_row, keep_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
-use crate::matching::memory::slices::{copy, part, part_mut, split_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
+use crate::matching::memory::views::{view, view_mut};
 use crate::matching::method::{Frame, Method};
 use crate::units::{Disparity, PixelFlags};
 use core::ops::Range;
@@ -29,6 +30,10 @@ const EVERY: usize = 5;
 const LEAST_PERIOD: usize = 4;
 /// The fewest pixels that repeat those before them.
 const LEAST_RUN: usize = 24;
+/// Bytes of a word of blocks.
+const WORD: usize = size_of::<u32>();
+/// The flag of answers on a pattern, of four pixels.
+const AMBIGUOUS: u32 = PixelFlags::AMBIGUOUS.bits() as u32 * 0x0101_0101;
 
 /// Whether patterns are looked for. A window's costs say which of its disparities are as good, so that its
 /// methods have no code for it. A narrower row has none.
@@ -56,21 +61,25 @@ pub(super) fn take_repeats<S: Method>(frame: &mut Frame<'_>, y: usize, lines: Op
         let (twice, rest) = split_mut(rest, bytes);
         let (latest, rest) = split_mut(rest, bytes);
         let (before, rest) = split_mut(rest, bytes);
-        let before_that = part_mut(rest, ..bytes);
-        copy(before, before_that);
-        copy(latest, before);
-        latest.fill(0);
+        let [latest, before] = [latest, before].map(|bits| bits.as_chunks_mut().0);
+        let before_that = part_mut(rest, ..bytes).as_chunks_mut().0;
+        for ((latest, before), before_that) in latest.iter_mut().zip(&mut *before).zip(&mut *before_that) {
+            keep_loop();
+            (*before_that, *before, *latest) = (*before, *latest, [0; WORD]);
+        }
         mark(part(left[2], ..frame.width), most, frame.config.noise, latest);
         let three = latest.iter().zip(before).zip(before_that);
-        for (twice, ((a, b), c)) in twice.iter_mut().zip(three) {
-            *twice = *a & *b | *a & *c | *b & *c;
+        for (twice, ((a, b), c)) in twice.as_chunks_mut().0.iter_mut().zip(three) {
+            keep_loop();
+            let [a, b, c] = [*a, *b, *c].map(u32::from_le_bytes);
+            *twice = (a & b | (a | b) & c).to_le_bytes();
         }
     }
 }
 
 /// Sets the bits of the blocks where a line repeats itself within `most` pixels.
 #[inline(never)]
-fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
+fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [[u8; WORD]]) {
     let least = u32::from(least_gradient(noise));
     let slack = (least / 8 * 3) as u8;
     // Where brightness falls, it is turned round: so it is always the least value that is looked for.
@@ -104,40 +113,56 @@ fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u8]) {
 /// Sets the bits of the blocks where a line repeats itself among the pixels whose rises are `period` pixels
 /// apart, give or take `slack` in brightness. Most textures have far fewer of them than a pattern needs.
 #[inline(never)]
-fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, blocks: &mut [u8]) {
+fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, blocks: &mut [[u8; WORD]]) {
     let least_run = LEAST_RUN.max(period + period / 2);
     if period == 0 || pixels.len() < least_run {
         return;
     }
-    let mut run = 0;
-    for x in pixels {
+    // Before these there are no three a period away.
+    let first = pixels.start.max(period + 1);
+    let end = pixels.end.min(line.len()).max(first);
+    let (before, here) = (part(line, first - period..end - period), part(line, first..end));
+    let slack = u32::from(slack);
+    let mut run = first;
+    for (x, (&pixel, &other)) in (first..).zip(here.iter().zip(before)) {
         keep_loop();
-        let before = x.checked_sub(period + 1).and_then(|first| line.get(first..first + 3));
-        let repeats = match (before, line.get(x)) {
-            (Some(&[a, b, c]), Some(&pixel)) => {
-                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
-                pixel.saturating_add(slack) >= low && pixel <= high.saturating_add(slack)
-            }
-            _ => false,
-        };
-        run = if repeats { run + 1 } else { 0 };
-        if run == least_run {
-            for block in x.saturating_sub(run - 1 + period) / BLOCK..x / BLOCK {
-                keep_loop();
-                set(blocks, block);
-            }
+        // The one in the middle of the three is mostly near enough, and stands for them.
+        let (low, other) = (u32::from(pixel) + slack, u32::from(other));
+        if low.wrapping_sub(other) > 2 * slack && !is_among_three(line, x, period, slack) {
+            mark_run(run..x, least_run, period, blocks);
+            run = x + 1;
         }
-        if run >= least_run {
-            set(blocks, x / BLOCK);
-        }
+    }
+    mark_run(run..end, least_run, period, blocks);
+}
+
+/// Whether the brightness of a pixel lies in the range of the three a period before it, give or take `slack`.
+#[inline(never)]
+fn is_among_three(line: &[u8], x: usize, period: usize, slack: u32) -> bool {
+    let Some((&pixel, before)) = line.get(x).zip(line.get(x.wrapping_sub(period + 1)..)) else {
+        return false;
+    };
+    let (pixel, three) = (u32::from(pixel), before.iter().take(3).map(|&other| u32::from(other)));
+    let (low, high) = three.fold((u32::MAX, 0), |(low, high), other| (other.min(low), other.max(high)));
+    pixel + slack >= low && pixel <= high + slack
+}
+
+/// Sets the bits of the blocks of a run of pixels, if it is long enough, and of the period before it.
+#[inline(always)]
+fn mark_run(run: Range<usize>, least: usize, period: usize, blocks: &mut [[u8; WORD]]) {
+    if run.len() >= least {
+        mark_blocks((run.start - period) / BLOCK..run.end.div_ceil(BLOCK), blocks);
     }
 }
 
-/// Sets the bit of a block.
-#[inline(always)]
-fn set(blocks: &mut [u8], block: usize) {
-    if let Some(bits) = blocks.get_mut(block / 8) {
-        *bits |= 1 << (block % 8);
+/// Sets the bits of blocks.
+#[inline(never)]
+fn mark_blocks(of: Range<usize>, blocks: &mut [[u8; WORD]]) {
+    for (number, word) in blocks.iter_mut().enumerate() {
+        keep_loop();
+        // The bits from the first block on, and those from the end on.
+        let from = |block: usize| u32::MAX.unbounded_shl(block.saturating_sub(32 * number) as u32);
+        *word = (u32::from_le_bytes(*word) | from(of.start) & !from(of.end)).to_le_bytes();
     }
 }
 
@@ -150,8 +175,16 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
             let places = places.start.max(first)..places.end.max(first);
-            for flags in part_mut(flags, places.clone()) {
-                *flags = flags.union(PixelFlags::AMBIGUOUS);
+            // Most places are whole blocks.
+            let flags = view_mut::<PixelFlags, u8>(part_mut(flags, places.clone()));
+            let (fours, rest) = flags.as_chunks_mut();
+            for four in fours {
+                keep_loop();
+                *four = (u32::from_le_bytes(*four) | AMBIGUOUS).to_le_bytes();
+            }
+            for flags in rest {
+                keep_loop();
+                *flags |= PixelFlags::AMBIGUOUS.bits();
             }
             fill_row(part_mut(answers, places), Disparity::NONE);
         });
@@ -167,8 +200,9 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone());
             // On a large pattern nothing was filled.
-            let all = flags.iter().fold(PixelFlags::CLEAR, |all, &flags| all.union(flags));
-            if all.contains(PixelFlags::FILLED) {
+            let (fours, rest) = view::<PixelFlags, u8>(flags).as_chunks();
+            let all = fours.iter().fold(0, |all, four| all | u32::from_le_bytes(*four)).to_le_bytes();
+            if all.iter().chain(rest).any(|&bits| PixelFlags::from_bits(bits).contains(PixelFlags::FILLED)) {
                 for (flags, answer) in flags.iter_mut().zip(part_mut(answers, places)) {
                     keep_loop();
                     if flags.contains(PixelFlags::FILLED) {
@@ -186,9 +220,9 @@ mod tests {
     use super::*;
 
     fn marked(line: &[u8], most: usize) -> u32 {
-        let mut blocks = [0; 4];
+        let mut blocks = [[0; WORD]];
         mark(line, most, Noise::None, &mut blocks);
-        u32::from_le_bytes(blocks)
+        u32::from_le_bytes(blocks[0])
     }
 
     #[test]

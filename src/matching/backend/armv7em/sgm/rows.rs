@@ -23,7 +23,8 @@ fn is_whole(work: &PathWork<'_>, stride: usize) -> bool {
 
 /// Moves the path from above down to the row.
 ///
-/// It takes no room of its own: the paths of an odd row stand two columns further to the right than those of
+/// Above the first row of a frame paths cost nothing: all is zero there. It takes no room of its own: the paths
+/// of an odd row stand two columns further to the right than those of
 /// an even row. So each goes where one of the two was that it comes from, if odd rows are taken from right to
 /// left.
 #[inline(always)]
@@ -46,28 +47,34 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
     let costs = view::<u8, u32>(work.costs).as_ptr();
     let is_odd = !guide.row.is_multiple_of(2);
     let last = width - 1;
-    let column = |x: usize| top.wrapping_add(x * stride / 4);
-    let (x, on, gap) = if is_odd { (last, -1, -2) } else { (0, 1, 0) };
-    let (costs, kept) =
-        if is_odd { (costs.wrapping_add(last * stride / 4), column(width + 1)) } else { (costs, top) };
-    let above = if is_odd { [top, column(last)] } else { [column(COLUMNS_OFF), column(width + 1)] };
-    let column_bytes = stride as isize;
-    let off = on * 2 * COLUMNS_OFF as isize * column_bytes;
+    let (from, to) = if is_odd { (0, COLUMNS_OFF) } else { (COLUMNS_OFF, 0) };
+    let (on, gap) = if is_odd { (-1, -2) } else { (1, 0) };
     let mut frame = Frame {
-        change: change.wrapping_add(x),
+        change: change.wrapping_add(if is_odd { last } else { 0 }),
         on,
         steps: &steps,
         path: between.place(),
         fours: stride / 16,
-        gap: gap * column_bytes,
-        end: column(if is_odd { 1 } else { width }).cast_const(),
-        above: if guide.above.is_some() { above } else { [core::ptr::null_mut(); 2] },
-        beside: if is_odd { [off, 0] } else { [0, off] },
+        gap: gap * stride as isize,
+        end: core::ptr::null(),
+        beside: [0; 2],
     };
-    // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths; so many
-    // places are there; and a column has `4 * fours` words, `WORDS` at the most, as the average
-    // has room for.
-    unsafe { go_down(&raw mut frame, costs, kept) };
+    let mut done = 0;
+    while done < width {
+        let x = if is_odd { last - done } else { done };
+        // Beyond the row's ends stands the nearest column. Between them the two are as far away for all.
+        let is_inner = x >= COLUMNS_OFF && x + COLUMNS_OFF <= last;
+        let count = if is_inner { width - 2 * COLUMNS_OFF } else { 1 };
+        let beside = [x.saturating_sub(COLUMNS_OFF), (x + COLUMNS_OFF).min(last)];
+        let place = (x + to) * stride / 4;
+        frame.beside = beside.map(|x| ((x + from) * stride) as isize - 4 * place as isize);
+        frame.end = top.wrapping_add(place).wrapping_offset(on * (count * stride / 4) as isize).cast_const();
+        // SAFETY: `width` columns are in the volume of the costs and two more in that of the paths, of which
+        // `count` from column `x` on are taken, none twice; so many places are there; and a column has
+        // `4 * fours` words, `WORDS` at the most, as the average has room for.
+        unsafe { go_down(&raw mut frame, costs.wrapping_add(x * stride / 4), top.wrapping_add(place)) };
+        done += count;
+    }
 }
 
 /// Takes a path along the row, and adds it to the path from above, or the second one to both.
@@ -114,7 +121,6 @@ pub(super) fn along<const WORDS: usize, const ALL: bool>(
         fours: stride / 16,
         gap: gap * stride as isize,
         end: sums.wrapping_add(first).wrapping_offset(on * (columns * stride / 4) as isize).cast_const(),
-        above: [core::ptr::null_mut(); 2],
         beside: [0; 2],
     };
     // SAFETY: `columns` columns from column `x` on are in the volumes, and a place more is there; and a

@@ -73,9 +73,7 @@ pub(super) struct Frame {
     pub gap: isize,
     /// 24: where the sums, or the paths that are kept, are at their end.
     pub end: *const u32,
-    /// 28, 32: the first and the last column of the row above.
-    pub above: [*mut u32; 2],
-    /// 36, 40: bytes from where a path is kept to the columns left and right of the pixel that it comes from.
+    /// 28, 32: bytes from where a path is kept to the two columns of the row above that it comes from.
     pub beside: [isize; 2],
 }
 
@@ -200,12 +198,12 @@ pub(super) unsafe fn go_along(frame: *mut Frame, costs: *const u32, from: *const
     }
 }
 
-/// Takes the path from above into a row with agreements `costs`, from the average of two columns, rounded
-/// down, or from nothing if there are none. `kept` begins with what was one of the two. 32 instructions for
-/// two words and 38 a pixel.
+/// Takes the path from above into columns with agreements `costs`, from the average of two columns of the row
+/// above, rounded down. `kept` begins with what was one of the two, or will be. 32 instructions for two words
+/// and 29 a pixel.
 ///
 /// # Safety
-/// As for [`go_along`]; and the frame's columns of the row above can be read.
+/// As for [`go_along`]; and for each column two of the row above can be read.
 #[inline(never)]
 pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u32) {
     // SAFETY: as for `go_along`.
@@ -214,20 +212,9 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
             // r0 average, r2 costs, r3 kept
             "push {{r6, r7, lr}}",
             "1:",
-            "mov r9, #0",
-            "ldrd r10, r11, [lr, #28]",
-            "cmp r10, #0",
-            "beq 3f",
-            // The columns on both sides, or the nearest that there is.
-            "ldrd r0, r1, [lr, #36]",
+            "ldrd r0, r1, [lr, #28]",
             "add r0, r3, r0",
             "add r1, r3, r1",
-            "cmp r0, r10",
-            "it lo",
-            "movlo r0, r10",
-            "cmp r1, r11",
-            "it hi",
-            "movhi r1, r11",
             "ldrd r12, r5, [lr, #12]",
             "mvn r9, #0",
             four_words!(
@@ -244,7 +231,6 @@ pub(super) unsafe fn go_down(frame: *mut Frame, costs: *const u32, kept: *mut u3
                  sel r9, r11, r9"
             ),
             least_of_four!(),
-            "3:",
             choose_step!(),
             "ldrd r0, lr, [lr, #12]",
             "ldr r1, [r0, #-1]",

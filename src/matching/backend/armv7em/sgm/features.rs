@@ -7,23 +7,16 @@ use super::instructions::{max8, min8, uhadd8, uqsub16, with_bit_where_less};
 use super::splat;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
+use crate::matching::backend::portable::sgm::groups::{COLUMNS, REACH, columns, groups, put};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
-
-/// Columns in a word.
-const COLUMNS: usize = 4;
-/// Columns to each side that a code looks at.
-const REACH: usize = 4;
-/// Columns that four pixels look at.
-const NEAR: usize = COLUMNS + 2 * REACH;
 
 /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
 /// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
 fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
     let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
     let count = along.len().min(across.len()).min(census.len());
-    // The groups of four that see nothing outside the line and have all places.
-    let groups = (width.saturating_sub(NEAR - COLUMNS) / COLUMNS).min(count.saturating_sub(REACH) / COLUMNS);
+    let groups = groups(width, count);
     let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
     // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they
     // have places.
@@ -44,35 +37,8 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
             gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
         }
         for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-            put(part_mut(row, x..), word);
+            put(part_mut(row, x..), word.to_le_bytes());
         }
-    }
-}
-
-/// The columns of a line from [`REACH`] before `place` on; those outside the line are the nearest inside.
-#[inline(never)]
-fn columns(line: &[u8], place: usize) -> [u8; COLUMNS] {
-    let end = |column: Option<&u8>| [column.copied().unwrap_or(0); COLUMNS];
-    if place + COLUMNS <= REACH {
-        return end(line.first());
-    }
-    if place >= line.len() + REACH {
-        return end(line.last());
-    }
-    let inside = place.checked_sub(REACH).and_then(|x| line.get(x..)?.first_chunk());
-    let outside = || {
-        let column = |i: usize| (place + i).saturating_sub(REACH).min(line.len().saturating_sub(1));
-        core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0))
-    };
-    inside.copied().unwrap_or_else(outside)
-}
-
-/// Writes the bytes of a word for which the row has a place.
-#[inline(always)]
-fn put(row: &mut [u8], word: u32) {
-    match row.first_chunk_mut() {
-        Some(four) => *four = word.to_le_bytes(),
-        None => row.iter_mut().zip(word.to_le_bytes()).for_each(|(to, from)| *to = from),
     }
 }
 

@@ -58,7 +58,8 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
 
     // One more than is compared, for the numbers halfway to the last.
     let count = width + work.stride;
-    let of_right = of_right.get_mut(..6 * count)?;
+    // Some kernels read three numbers beyond the last row, for which there is room.
+    let of_right = of_right.get_mut(..6 * count + 3)?;
     let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
     let outside = count.min(work.stride - 1 + work.min_disparity);
     let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));

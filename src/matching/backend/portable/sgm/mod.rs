@@ -18,7 +18,7 @@
 //! Everything fits bytes: see [`Penalties`](crate::matching::Penalties). Kept from row to row are a, t and
 //! the room for s; within edges, two more.
 //!
-//! * `features`: what a pixel's cost compares, of a row of both images.
+//! * `features`: what a pixel's cost compares, of a row of both images; `groups`: four pixels of it.
 //! * `edges`: how far a row's costs are averaged with others.
 //! * `passes`: the passes, for vectors; `quarters`: for cores without.
 //!
@@ -27,6 +27,7 @@
 
 pub(in crate::matching::backend) mod edges;
 pub(in crate::matching::backend) mod features;
+pub(in crate::matching::backend) mod groups;
 pub(in crate::matching::backend) mod passes;
 mod quarters;
 
@@ -134,7 +135,7 @@ macro_rules! in_words {
             ..=32 if MOST == 32 => words::$pass::<Quarters<8, true, 20>, $($more)?>($work, $($argument),*),
             // Room for as few as will do: it stands on the stack.
             ..=64 if MOST != 16 && MOST != 32 => {
-                words::$pass::<Quarters<16, false, 24>, $($more)?>($work, $($argument),*)
+                words::$pass::<Quarters<16, false, 28>, $($more)?>($work, $($argument),*)
             }
             ..=128 if MOST == 0 => words::$pass::<Quarters<32, false, 44>, $($more)?>($work, $($argument),*),
             _ if MOST == 0 => words::$pass::<Quarters<64, false, 76>, $($more)?>($work, $($argument),*),

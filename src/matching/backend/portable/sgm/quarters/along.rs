@@ -3,7 +3,6 @@
 use super::columns::words;
 use super::lanes::{least_of_four, lesser};
 use super::steps::{Change, Step, Steps, close, ends};
-use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{chunks, part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
@@ -29,22 +28,18 @@ impl Along {
     /// the same.
     #[inline(always)]
     pub fn advance(&mut self, change: Change, costs: &[u32], from: &[Cell<u32>], to: &[Cell<u32>]) {
-        let mut step = Step::new(ends(from), self.least, change, self.far);
+        let step = Step::new(ends(from), self.least, change, self.far);
         let mut marked = u32::MAX;
-        let (Some((_, nexts)), Some((&last_cost, costs)), Some((last, cells))) =
-            (from.split_first(), costs.split_last(), to.split_last())
-        else {
-            return;
-        };
-        for ((next, &cost), cell) in nexts.iter().zip(costs).zip(cells) {
-            keep_loop();
-            let path = step.come(next.get()).wrapping_sub(cost);
-            cell.set(path);
+        let with = costs.as_chunks().0.iter().zip(to.as_chunks().0);
+        let with =
+            with.map(|([a, b, c, d], [to_a, to_b, to_c, to_d])| [(a, to_a), (b, to_b), (c, to_c), (d, to_d)]);
+        step.through(from, with, |(cost, to), come| {
+            let path = come.wrapping_sub(*cost);
+            to.set(path);
             marked = lesser(marked, path);
-        }
-        let path = step.come(step.behind).wrapping_sub(last_cost);
-        last.set(path);
-        marked = lesser(marked, path);
+        });
+        // Else the compiler finds the least only where nothing is beyond the search, of words put away for it.
+        marked = core::hint::black_box(marked);
         if self.beyond > 0 {
             marked = close(to, self.beyond, self.far);
         }

@@ -2,6 +2,9 @@
 
 use crate::matching::backend::work::{PathWork, STEP};
 
+/// Words that are worked on in a round: a column has whole fours of them.
+pub(super) const FOUR: usize = STEP / size_of::<u32>();
+
 /// Words of a column, at least four.
 #[inline(always)]
 pub(super) fn words<const WORDS: usize, const ALL: bool>(work: &PathWork<'_>) -> usize {

@@ -3,9 +3,9 @@
 //! Of a cost there is the agreement, the most that it may be less what it is, and the [`margin`]: a
 //! difference that ends at 0 cuts the cost off, and the average, which is rounded down, rounds the cost up.
 
-use super::columns::words;
+use super::columns::{FOUR, words};
 use super::lanes::{ONE, TOP, average, over, splat};
-use super::others::{Others, gather};
+use super::others::{NUMBERS, Others, gather};
 use super::steps::margin;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
@@ -26,21 +26,21 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
     let most = splat(work.penalties.cost.into());
     let margin = splat(margin(work.penalties).into());
     let mut others = [Others::default(); GROUPS];
-    // The first of the next pixel. Before any are made they are all behind.
-    let mut first = GROUPS;
+    gather::<S>(right, count, 0, words, &mut others);
+    // The first of the next pixel.
+    let mut first = 0;
     let pixels = left.along.iter().zip(left.across).zip(left.census.iter().zip(left.brightness));
     let columns = chunks_mut(view_mut::<u8, u32>(work.costs), words);
     for (x, (((&along, &across), (&census, &brightness)), column)) in pixels.zip(columns).enumerate() {
         if first + words > GROUPS {
-            // The last are the first ones of this pixel.
-            let kept = GROUPS - first;
-            let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells();
-            for (to, from) in all.iter().zip(part(all, first * size_of::<Others>() / size_of::<u32>()..)) {
+            // The last are the first ones of this pixel. One place is left out: whole fours are made.
+            let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells().as_chunks::<NUMBERS>().0;
+            for (to, from) in part(all, 1..words).iter().zip(part(all, first..)) {
                 keep_loop();
-                to.set(from.get());
+                to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
             }
-            gather::<S>(right, count, x + kept, words, part_mut(&mut others, kept..));
-            first = 0;
+            gather::<S>(right, count, x + words - 1, words, part_mut(&mut others, words..));
+            first = 1;
         }
         let pixel = Pixel {
             along: splat(along.into()),
@@ -50,7 +50,8 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
             most: most | TOP,
         };
         let others = part(&others, first..first + words);
-        for (cells, others) in column.as_chunks_mut::<2>().0.iter_mut().zip(others.as_chunks::<2>().0) {
+        let fours = others.as_chunks::<FOUR>().0;
+        for (cells, others) in column.as_chunks_mut::<FOUR>().0.iter_mut().zip(fours) {
             keep_loop();
             for (cell, others) in cells.iter_mut().zip(others) {
                 let agreement = pixel.agreement(others) + margin;

@@ -1,6 +1,6 @@
 //! The path from above.
 
-use super::columns::{column, words};
+use super::columns::{FOUR, column, words};
 use super::lanes::{average, least_of_four, lesser, splat};
 use super::steps::{Step, Steps, close, ends, most};
 use crate::matching::backend::loops::keep_loop;
@@ -47,32 +47,29 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
             let two = [one, other].map(|x| column(tops, (x + from) * count, count));
             let [Some(one), Some(other)] = two else { return };
             let mut marked = u32::MAX;
-            for (cell, (one, other)) in cells.iter().zip(one.iter().zip(other)) {
+            let fours = one.as_chunks::<FOUR>().0.iter().zip(other.as_chunks::<FOUR>().0);
+            for (cells, (one, other)) in cells.as_chunks::<FOUR>().0.iter().zip(fours) {
                 keep_loop();
-                let between = average(one.get(), other.get());
-                cell.set(between);
-                marked = lesser(marked, between);
+                for (cell, (one, other)) in cells.iter().zip(one.iter().zip(other)) {
+                    let between = average(one.get(), other.get());
+                    cell.set(between);
+                    marked = lesser(marked, between);
+                }
             }
             least = least_of_four(marked);
         }
         let change = steps.between(here, above);
         let base = base.wrapping_add(splat(change.jump));
-        let mut step = Step::new(ends(cells), least, change, steps.far);
-        let put = |(kept, sum): (&Cell<u32>, &Cell<u32>), come: u32, cost: u32| {
-            let path = come.wrapping_add(base).wrapping_sub(cost);
+        let step = Step::new(ends(cells), least, change, steps.far);
+        let with = costs.as_chunks().0.iter().zip(kept.as_chunks().0.iter().zip(sums.as_chunks().0));
+        let with = with.map(|([a, b, c, d], ([kept_a, kept_b, kept_c, kept_d], [e, f, g, h]))| {
+            [(a, kept_a, e), (b, kept_b, f), (c, kept_c, g), (d, kept_d, h)]
+        });
+        step.through(cells, with, |(cost, kept, sum), come| {
+            let path = come.wrapping_add(base).wrapping_sub(*cost);
             kept.set(path);
             sum.set(sum.get().wrapping_add(path));
-        };
-        let (Some((_, nexts)), Some((&last_cost, costs)), Some((last_kept, kepts)), Some((last_sum, sums))) =
-            (cells.split_first(), costs.split_last(), kept.split_last(), sums.split_last())
-        else {
-            return;
-        };
-        for ((next, &cost), both) in nexts.iter().zip(costs).zip(kepts.iter().zip(sums)) {
-            keep_loop();
-            put(both, step.come(next.get()), cost);
-        }
-        put((last_kept, last_sum), step.come(step.behind), last_cost);
+        });
         if beyond > 0 {
             close(kept, beyond, steps.far);
         }

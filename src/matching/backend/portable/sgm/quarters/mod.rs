@@ -7,8 +7,8 @@
 //! * A path along the row is moved by the same number for all candidates, by as much as saves an addition.
 //!   What it was moved by is taken off the winner.
 //!
-//! * `others`: what is compared with, in the order of the words; `cost`: the costs. `edges`: averaged within
-//!   edges.
+//! * `rows`: what is compared; `others`: what it is compared with, in the order of the words; `cost`: the
+//!   costs. `edges`: averaged within edges.
 //! * `steps`: from pixel to pixel; `down` and `along`: the paths; `winners`: the last path and the least
 //!   sums; `columns`: where they stand.
 
@@ -19,21 +19,23 @@ mod down;
 mod edges;
 mod lanes;
 mod others;
+mod rows;
 mod steps;
 mod winners;
 
 use super::Passes;
-use super::features::{Features, PlainRows};
+use super::features::Features;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::{Found, Unique};
+use rows::WordRows;
 
 /// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
-/// many. Costs are made with room for so many groups of right pixels, more than a column has words.
+/// many. Costs are made with room for so many groups of right pixels, whole fours and more than a column has.
 pub(super) struct Quarters<const WORDS: usize, const ALL: bool, const GROUPS: usize>;
 
 impl<const WORDS: usize, const ALL: bool, const GROUPS: usize> Passes for Quarters<WORDS, ALL, GROUPS> {
-    type Rows = PlainRows;
+    type Rows = WordRows;
 
     #[inline(always)]
     fn clear(work: &mut PathWork<'_>) {

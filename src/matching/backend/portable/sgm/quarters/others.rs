@@ -1,23 +1,26 @@
 //! What right pixels look like, in the order in which columns have them as candidates.
 
+use super::columns::FOUR;
 use super::lanes::{ONE, TOP};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
-use crate::matching::memory::slices::{chunks, part};
+use crate::matching::memory::slices::part;
 
 /// What four right pixels look like that are the candidates of a word: the least gradient along the line
 /// between the pixel and its neighbours, or the pixel's own where nothing is compared between pixels, marked;
 /// 128 less the greatest; the gradient across the line; the census; the brightness, halved.
-pub(super) type Others = [u32; 5];
+pub(super) type Others = [u32; NUMBERS];
+/// How many numbers that is.
+pub(super) const NUMBERS: usize = 5;
 
 /// What is turned of each.
 const TURNED: Others = [TOP, !TOP, 0, 0, 0];
 /// What is added to each then.
 const ADDED: Others = [0, ONE, 0, 0, 0];
 
-/// Makes groups of right pixels, the first of which stands in that column, and the others of a group so many
-/// `words` further to the right each. `right` are rows of `count` features. Groups behind the last column
-/// are left as they are.
+/// Makes groups of right pixels, a whole number of fours of them, the first of which stands in that column, and
+/// the others of a group so many `words` further to the right each. `right` are rows of `count` features, and
+/// three numbers more. Groups behind the last column are left as they are, or of no meaning.
 #[inline(always)]
 pub(super) fn gather<S: SgmParameters>(
     right: &[u8],
@@ -26,18 +29,20 @@ pub(super) fn gather<S: SgmParameters>(
     words: usize,
     groups: &mut [Others],
 ) {
-    let mut rows = chunks(right, count);
-    let [along, across, census, brightness, least, greatest] =
-        core::array::from_fn(|_| rows.next().unwrap_or_default());
-    let (least, greatest) = if S::BETWEEN_PIXELS { (least, greatest) } else { (along, along) };
-    let rows = [least, greatest, across, census, brightness];
+    // The rows of what stands in a group, in its order.
+    let rows = if S::BETWEEN_PIXELS { [4, 5, 1, 2, 3] } else { [0, 0, 1, 2, 3] };
+    let groups = groups.as_chunks_mut::<FOUR>().0;
     for (kind, (row, (turned, added))) in rows.into_iter().zip(TURNED.into_iter().zip(ADDED)).enumerate() {
-        let lane = |lane: usize| part(row, (first + lane * words).min(row.len())..);
-        let pixels = lane(0).iter().zip(lane(1)).zip(lane(2).iter().zip(lane(3)));
-        for (group, ((&a, &b), (&c, &d))) in groups.iter_mut().zip(pixels) {
+        let from = row * count + first;
+        let lane = |lane: usize| part(right, (from + lane * words).min(right.len())..).as_chunks::<FOUR>().0;
+        let lanes = lane(0).iter().zip(lane(1)).zip(lane(2).iter().zip(lane(3)));
+        for (groups, ((a, b), (c, d))) in groups.iter_mut().zip(lanes) {
             keep_loop();
-            if let Some(four) = group.get_mut(kind) {
-                *four = (u32::from_le_bytes([a, b, c, d]) ^ turned).wrapping_add(added);
+            let pixels = a.iter().zip(b).zip(c.iter().zip(d));
+            for (group, ((&a, &b), (&c, &d))) in groups.iter_mut().zip(pixels) {
+                if let Some(four) = group.get_mut(kind) {
+                    *four = (u32::from_le_bytes([a, b, c, d]) ^ turned).wrapping_add(added);
+                }
             }
         }
     }

@@ -1,6 +1,8 @@
 //! What a step of a path costs, and the step itself.
 
+use super::columns::FOUR;
 use super::lanes::{TOP, before, lesser, splat, up_to_top};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::penalties::Penalties;
 use core::cell::Cell;
 
@@ -64,7 +66,7 @@ pub(super) struct Step {
     before: u32,
     here: u32,
     /// What is behind the last word.
-    pub behind: u32,
+    behind: u32,
 }
 
 impl Step {
@@ -81,10 +83,31 @@ impl Step {
         }
     }
 
-    /// What it costs to come to the next word's candidates: 128 from the least cost by a jump, by as much
-    /// less as it is to come from near.
+    /// Gives what it costs to come to the candidates of each word of a path's column, with the numbers that
+    /// are handed on for it, four words at a time: 128 from the least cost by a jump, by as much less as it is
+    /// to come from near.
     #[inline(always)]
-    pub fn come(&mut self, next: u32) -> u32 {
+    pub fn through<T: Copy>(
+        mut self,
+        column: &[Cell<u32>],
+        with: impl Iterator<Item = [T; FOUR]>,
+        mut put: impl FnMut(T, u32),
+    ) {
+        let fours = column.as_chunks::<FOUR>().0;
+        for (number, ([_, b, c, d], with)) in fours.iter().zip(with).enumerate() {
+            keep_loop();
+            let [of_a, of_b, of_c, of_d] = with;
+            put(of_a, self.come(b.get()));
+            put(of_b, self.come(c.get()));
+            put(of_c, self.come(d.get()));
+            let next = fours.get(number + 1).map_or(self.behind, |[next, ..]| next.get());
+            put(of_d, self.come(next));
+        }
+    }
+
+    /// What it costs to come to the word before this `next` one.
+    #[inline(always)]
+    fn come(&mut self, next: u32) -> u32 {
         let beside = lesser(self.before, next) + self.step;
         let near = lesser(beside, self.here);
         self.before = self.here | TOP;

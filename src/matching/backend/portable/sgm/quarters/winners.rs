@@ -1,7 +1,7 @@
 //! The path from the right, and the winners of the paths' sums.
 
 use super::along::Along;
-use super::columns::words;
+use super::columns::{FOUR, words};
 use super::lanes::before;
 use super::steps::{Steps, most};
 use crate::matching::backend::loops::keep_loop;
@@ -131,8 +131,8 @@ impl Sums<'_> {
             let top = difference & TOP;
             marked - (difference & (top - (top >> 15)))
         };
-        let pairs = self.path.as_chunks::<2>().0.iter().zip(self.sums.as_chunks::<2>().0);
-        for (path, sums) in pairs {
+        let fours = self.path.as_chunks::<FOUR>().0.iter().zip(self.sums.as_chunks::<FOUR>().0);
+        for (path, sums) in fours {
             keep_loop();
             for (path, &sum) in path.iter().zip(sums) {
                 let path = path.get();

@@ -36,6 +36,9 @@ pub(super) fn update_fours<const STRIDE: usize, const LINE: usize>(
     let Some((tables, workspace)) = workspace.split_at_mut_checked(2 * tables::words::<LINE>()) else {
         return;
     };
+    if row.enter.or(row.leave).is_none() {
+        return;
+    }
     // The right codes alone.
     let codes = [row.enter, row.leave];
     let rights = reversed(row, codes.map(|codes| codes.unwrap_or(&[])), HIGH, workspace);

@@ -7,7 +7,7 @@ use super::instructions::{max8, min8, uhadd8, uqsub16, with_bit_where_less};
 use super::splat;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
-use crate::matching::backend::portable::sgm::groups::{COLUMNS, REACH, columns, groups, put};
+use crate::matching::backend::portable::sgm::features_by_four::{COLUMNS, REACH, columns, groups, put};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
 
@@ -31,7 +31,7 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
         let near = lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
         let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened().as_ptr());
         let [mut code, mut one, mut other] = [0; 3];
-        // SAFETY: a group sees `NEAR` columns.
+        // SAFETY: a group sees three words of columns.
         unsafe {
             codes([above2, here, below2], &raw mut code, 1);
             gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
@@ -42,8 +42,8 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
     }
 }
 
-/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees [`NEAR`]
-/// columns of a row, which are four further with each.
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees three words
+/// of a row's columns, which are one further with each.
 ///
 /// # Safety
 /// They can be read, and the codes written.

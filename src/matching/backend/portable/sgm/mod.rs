@@ -18,7 +18,7 @@
 //! Everything fits bytes: see [`Penalties`](crate::matching::Penalties). Kept from row to row are a, t and
 //! the room for s; within edges, two more.
 //!
-//! * `features`: what a pixel's cost compares, of a row of both images; `groups`: four pixels of it.
+//! * `features`: what a pixel's cost compares, of a row of both images; `features_by_four`: four pixels.
 //! * `edges`: how far a row's costs are averaged with others.
 //! * `passes`: the passes, for vectors; `quarters`: for cores without.
 //!
@@ -27,7 +27,7 @@
 
 pub(in crate::matching::backend) mod edges;
 pub(in crate::matching::backend) mod features;
-pub(in crate::matching::backend) mod groups;
+pub(in crate::matching::backend) mod features_by_four;
 pub(in crate::matching::backend) mod passes;
 mod quarters;
 

@@ -7,7 +7,7 @@
 //! * A path along the row is moved by the same number for all candidates, by as much as saves an addition.
 //!   What it was moved by is taken off the winner.
 //!
-//! * `rows`: what is compared; `others`: what it is compared with, in the order of the words; `cost`: the
+//! * `features`: what is compared; `others`: what it is compared with, in the order of the words; `cost`: the
 //!   costs. `edges`: averaged within edges.
 //! * `steps`: from pixel to pixel; `down` and `along`: the paths; `winners`: the last path and the least
 //!   sums; `columns`: where they stand.
@@ -17,9 +17,9 @@ mod columns;
 mod cost;
 mod down;
 mod edges;
+mod features;
 mod lanes;
 mod others;
-mod rows;
 mod steps;
 mod winners;
 
@@ -28,7 +28,7 @@ use super::features::Features;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::{Found, Unique};
-use rows::WordRows;
+use features::WordRows;
 
 /// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
 /// many. Costs are made with room for so many groups of right pixels, whole fours and more than a column has.

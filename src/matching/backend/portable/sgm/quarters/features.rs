@@ -4,7 +4,9 @@
 use super::lanes::{TOP, average, over};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
-use crate::matching::backend::portable::sgm::groups::{COLUMNS, Group, REACH, columns, groups, put};
+use crate::matching::backend::portable::sgm::features_by_four::{
+    COLUMNS, Group, REACH, columns, groups, put,
+};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
 

@@ -91,7 +91,7 @@ struct Plane<'a> {
 
 impl Plane<'_> {
     /// Adds the costs of the low bits of codes to the columns, or takes off what those of the high bits lack.
-    #[inline(never)]
+    #[inline(always)]
     fn sum<const STRIDE: usize, const LINE: usize, const HIGH: bool>(
         &self,
         tables: &mut [u32],

@@ -42,8 +42,8 @@ fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3
     }
 }
 
-/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees three words
-/// of a row's columns, which are one further with each.
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees
+/// three words of a row's columns, and begins a word further on than the one before.
 ///
 /// # Safety
 /// They can be read, and the codes written.

@@ -23,10 +23,9 @@ fn is_whole(work: &PathWork<'_>, stride: usize) -> bool {
 
 /// Moves the path from above down to the row.
 ///
-/// Above the first row of a frame paths cost nothing: all is zero there. It takes no room of its own: the paths
-/// of an odd row stand two columns further to the right than those of
-/// an even row. So each goes where one of the two was that it comes from, if odd rows are taken from right to
-/// left.
+/// Above the first row of a frame paths cost nothing: all is zero there. It takes no room of its own: the
+/// paths of an odd row stand two columns further to the right than those of an even row. So each goes
+/// where one of the two was that it comes from, if odd rows are taken from right to left.
 #[inline(always)]
 pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
     let (width, stride) = (work.width, stride::<WORDS, ALL>(work));

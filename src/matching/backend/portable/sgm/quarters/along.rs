@@ -38,7 +38,8 @@ impl Along {
             to.set(path);
             marked = lesser(marked, path);
         });
-        // Else the compiler finds the least only where nothing is beyond the search, of words put away for it.
+        // Else the compiler finds the least only where nothing is beyond the search, of words put away
+        // for it.
         marked = core::hint::black_box(marked);
         if self.beyond > 0 {
             marked = close(to, self.beyond, self.far);

@@ -18,9 +18,10 @@ const TURNED: Others = [TOP, !TOP, 0, 0, 0];
 /// What is added to each then.
 const ADDED: Others = [0, ONE, 0, 0, 0];
 
-/// Makes groups of right pixels, a whole number of fours of them, the first of which stands in that column, and
-/// the others of a group so many `words` further to the right each. `right` are rows of `count` features, and
-/// three numbers more. Groups behind the last column are left as they are, or of no meaning.
+/// Makes groups of right pixels, a whole number of fours of them, the first of which stands in that
+/// column, and the others of a group so many `words` further to the right each. `right` are rows of
+/// `count` features, and three numbers more. Groups behind the last column are left as they are, or of no
+/// meaning.
 #[inline(always)]
 pub(super) fn gather<S: SgmParameters>(
     right: &[u8],

@@ -83,9 +83,9 @@ impl Step {
         }
     }
 
-    /// Gives what it costs to come to the candidates of each word of a path's column, with the numbers that
-    /// are handed on for it, four words at a time: 128 from the least cost by a jump, by as much less as it is
-    /// to come from near.
+    /// Gives what it costs to come to the candidates of each word of a path's column, with the numbers
+    /// that are handed on for it, four words at a time: 128 from the least cost by a jump, by as much
+    /// less as it is to come from near.
     #[inline(always)]
     pub fn through<T: Copy>(
         mut self,

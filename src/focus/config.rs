@@ -39,6 +39,22 @@ impl FocusConfig {
         Self { width, height, cell_px: 8, radius: 0, exposure_varies: true }
     }
 
+    /// An answer a pixel, or for each four, from windows of three sizes, the narrowest first, for
+    /// [`narrowest_steady`](super::narrowest_steady): 5, 13 and 26 pixels wide, with nearer ones counting
+    /// more.
+    pub const fn windows(width: u16, height: u16) -> [Self; 3] {
+        let pixels = Self::pixels(width, height);
+        [Self { radius: 1, ..pixels }, pixels, Self { cell_px: 2, ..pixels }]
+    }
+
+    /// Windows of two sizes for frames that breathe ([`Breathing`](super::Breathing)), 18 and 26 pixels wide:
+    /// what lies between two pixels is less sharp than on one, and a window has to be wide enough for that
+    /// to average out.
+    pub const fn breathing_windows(width: u16, height: u16) -> [Self; 2] {
+        let [.., widest] = Self::windows(width, height);
+        [Self { radius: 2, ..widest }, widest]
+    }
+
     /// Cells in a row; those at the right end may be cut off.
     pub const fn columns(&self) -> usize {
         self.width.div_ceil(if self.cell_px == 0 { 1 } else { self.cell_px }) as usize

@@ -16,8 +16,8 @@ use super::{
 /// In running order: lines are smoothed ([`binomial`](super::binomial)) and measured
 /// ([`modified_laplacian`](super::modified_laplacian)); the measure is summed up in cells, then twice over
 /// windows; their logarithms pass through the cells, which keep the last eleven frames and the
-/// peak so far: a parabola through seven logarithms, or through eleven where it is broad and noise would move
-/// its top. A peak is found the better, the more frames it spans; three are enough.
+/// peak so far: a parabola through three logarithms, or through more, up to eleven, where noise would move
+/// its top by a tenth of a frame. A peak is found the better, the more frames it spans; three are enough.
 ///
 /// The measure is the default against noise and changes of brightness: smoothing keeps 3/8 of the noise,
 /// absolute values grow in proportion to the contrast where squares would let the strongest edge of a window

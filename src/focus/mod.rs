@@ -7,8 +7,8 @@
 //!   [`DepthOfField`].
 //! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order:
 //!   [`binomial`], [`modified_laplacian`], [`tenengrad`], [`laplacian`].
-//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; then [`median_row`] and
-//!   [`plane_row`].
+//! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; among windows of
+//!   several sizes [`narrowest_steady`] chooses; then [`median_row`] and [`plane_row`].
 //! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
@@ -57,6 +57,7 @@ mod autofocus;
 mod scale;
 mod sharpness;
 mod region;
+mod window_choice;
 
 pub use actuator::{ActuatorErrorType, ActuatorLimits, LensActuator};
 pub use all_in_focus::AllInFocusRow;
@@ -80,3 +81,4 @@ pub use peak_search::{FocusSearch, FocusSearchStep};
 pub use region::{Region, RegionSharpness};
 pub use scale::{FocusScale, FocusScaleError};
 pub use sharpness::{Measure, SharpnessRows};
+pub use window_choice::narrowest_steady;

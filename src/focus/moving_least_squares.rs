@@ -9,6 +9,8 @@ const STEPS: [(u32, i32); 3] = [(102, 4), (51, 2), (26, 1)];
 /// What answers of one surface differ by without noise, and what none is surer than, 1/256 frame.
 const NEAR: u32 = 90;
 const SUREST: f32 = 38.0;
+/// How many times the variance of answers may be that of their distances from a plane.
+const FARTHEST: f32 = 2.0;
 /// What a slope is held back by, of the weight of all.
 const RIDGE: f32 = 1e-3;
 
@@ -21,8 +23,10 @@ const RIDGE: f32 = 1e-3;
 /// An answer that noise moves by less than a tenth of a frame stays as it is; others see 7 by 7 answers
 /// around them, one, two or four cells apart, the more noise the farther. For a window's sharpness is shared
 /// by its neighbours, and only what lies farther away adds anything new. A plane and no mean, as weights are
-/// not the same on both sides of a slope. A cell without an answer stays so, and one keeps its own deviation
-/// and confidence.
+/// not the same on both sides of a slope. Where the answers are farther from the plane than their noise
+/// explains, the surface is curved: the next shorter step is taken, and without one the median stays. No
+/// answer leaves the range of those that it comes from. A cell without an answer stays so, and one keeps
+/// its own deviation and confidence.
 pub fn plane_row(
     peaks: &[Result<FocusPeak, NoFocus>],
     columns: usize,
@@ -38,21 +42,26 @@ pub fn plane_row(
     };
     for (x, own) in (0..columns as i32).zip(out) {
         let Ok(own) = own else { continue };
-        let Some(&(_, step)) = STEPS.iter().find(|(least, _)| own.noise_q8 >= *least) else { continue };
-        let mut sums = Sums::default();
-        for dy in -REACH..=REACH {
-            for dx in -REACH..=REACH {
-                let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
-                if is_same_surface(own, &near) {
-                    let off = near.position_q8 as f32 - own.position_q8 as f32;
-                    let variance = near.noise_q8 as f32 * near.noise_q8 as f32;
-                    sums.add([dx as f32, dy as f32], off, SUREST * SUREST / (variance + SUREST * SUREST));
+        for &(_, step) in STEPS.iter().filter(|(least, _)| own.noise_q8 >= *least) {
+            let mut sums = Sums::default();
+            let (mut lowest, mut highest) = (own.position_q8, own.position_q8);
+            for dy in -REACH..=REACH {
+                for dx in -REACH..=REACH {
+                    let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
+                    if is_same_surface(own, &near) {
+                        let off = near.position_q8 as f32 - own.position_q8 as f32;
+                        sums.add([dx as f32, dy as f32], off, near.noise_q8 as f32);
+                        lowest = lowest.min(near.position_q8);
+                        highest = highest.max(near.position_q8);
+                    }
                 }
             }
+            if let Some(value) = sums.value() {
+                // Rounded; a cast of what is out of range is the nearest end.
+                own.position_q8 = ((own.position_q8 as f32 + value + 0.5) as u32).clamp(lowest, highest);
+                break;
+            }
         }
-        let moved = own.position_q8 as f32 + sums.value();
-        // Rounded; a cast of what is out of range is the nearest end.
-        own.position_q8 = (moved + 0.5) as u32;
     }
 }
 
@@ -75,10 +84,16 @@ struct Sums {
     /// Sums of weight and answer, and of these and place.
     value: f32,
     values: [f32; 2],
+    /// Sums of weight and squared answer, and of weight and variance.
+    energy: f32,
+    noise: f32,
 }
 
 impl Sums {
-    fn add(&mut self, [x, y]: [f32; 2], value: f32, weight: f32) {
+    fn add(&mut self, [x, y]: [f32; 2], value: f32, noise: f32) {
+        let weight = SUREST * SUREST / (noise * noise + SUREST * SUREST);
+        self.energy += weight * value * value;
+        self.noise += weight * noise * noise;
         self.weight += weight;
         let [px, py] = &mut self.places;
         let [sx, sy] = &mut self.squares;
@@ -93,12 +108,12 @@ impl Sums {
         *vy += weight * y * value;
     }
 
-    /// Value of the plane at the place itself; 0 where there is nothing. The slopes come from sums about the
-    /// weighted mean, of which the ridge bounds the condition: in those about the place itself a lone answer
-    /// at the side leaves the determinant nothing but rounding.
-    fn value(&self) -> f32 {
+    /// Value of the plane at the place itself; `None` where answers are farther from it than their noise
+    /// says. The slopes come from sums about the weighted mean, of which the ridge bounds the condition: in
+    /// those about the place itself a lone answer at the side leaves the determinant nothing but rounding.
+    fn value(&self) -> Option<f32> {
         if self.weight <= 0.0 {
-            return 0.0;
+            return None;
         }
         let [mean_x, mean_y] = self.places.map(|sum| sum / self.weight);
         let mean = self.value / self.weight;
@@ -110,10 +125,12 @@ impl Sums {
         let product = self.product - px * mean_y;
         let (vx, vy) = (vx - px * mean, vy - py * mean);
         let determinant = sx * sy - product * product;
-        if determinant <= 0.0 {
-            return mean;
-        }
-        let (a, b) = ((vx * sy - vy * product) / determinant, (vy * sx - vx * product) / determinant);
-        mean - a * mean_x - b * mean_y
+        let (a, b) = if determinant > 0.0 {
+            ((vx * sy - vy * product) / determinant, (vy * sx - vx * product) / determinant)
+        } else {
+            (0.0, 0.0)
+        };
+        let off_plane = self.energy - self.value * mean - a * vx - b * vy;
+        (off_plane <= FARTHEST * self.noise).then_some(mean - a * mean_x - b * mean_y)
     }
 }

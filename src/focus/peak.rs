@@ -1,20 +1,26 @@
 //! The focus peak of a cell: a parabola fitted to the logarithms of its sharpness.
 
 use super::logarithm::{FRACTION, OCTAVE, log2};
+use core::ops::Range;
 
-/// Frames that a broad peak is fitted to, and half of them; half of those of a narrow one.
+/// Frames that a cell keeps, the most that a peak is fitted to, and half of them.
 pub(super) const FRAMES: usize = 11;
 const WIDE: u32 = 5;
-const NARROW: u32 = 3;
+/// Noise that a fit may leave in the top of its parabola, 1/256 frame: a tenth of a frame.
+const STEADY: u32 = 26;
+/// Deviation of the slope at the top of the fits that reach 1, 2, 3, 4 and 5 frames to either side, in
+/// 1/256 of the mean size of second differences, which is 1.95 deviations of a logarithm; and 2.5
+/// deviations of the bend, in 1/16.
+const FITS: [(u32, u32); WIDE as usize] = [(93, 50), (44, 11), (27, 5), (19, 3), (14, 2)];
+/// Second differences to either side of a peak that are its own, and with how many frames others are enough.
+const OWN: u32 = 2;
+const ENOUGH: u32 = 10;
 /// What a frame's brightness may shift a logarithm by, either way.
 pub(super) const BIAS: u16 = 4 * OCTAVE;
 /// Weights of the frames around a peak, for the choice of it.
 const CHOICE: [(isize, u32); 5] = [(-2, 1), (-1, 2), (0, 3), (1, 2), (2, 1)];
-
-/// Bends of the wide fit, below the first of which it counts alone and from the second on not at all: where
-/// its frames lie around the peak, and where the stack ends within them and they see one flank more than the
-/// other.
-const BROAD: [[u32; 2]; 2] = [[40, 80], [15, 30]];
+/// Sum of the weights in [`CHOICE`].
+const CHOICE_WEIGHT: u32 = 9;
 
 /// The state of a cell, 48 bytes: its last sharpnesses and its peak so far.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -27,8 +33,10 @@ pub struct FocusCell {
     peak: u16,
     /// How strongly the parabola bends at the peak, per frame and frame.
     bend: u16,
-    /// What share of the peak is that of the wide fit, in 1/256.
-    wide: u16,
+    /// The deviation of the slope of the fit that gave the peak, of [`FITS`].
+    slope: u16,
+    /// Sum of the sizes of the second differences around the peak.
+    near: u16,
     /// The weighted sum by which the peak was chosen.
     choice: u32,
     /// Where the peak is, in 1/256 frame from 0.
@@ -60,7 +68,6 @@ pub struct FocusPeak {
 impl FocusPeak {
     /// The frame from 0, with its fraction.
     pub fn position(&self) -> f32 {
-        // Exact: 24 bits are 65 536 frames.
         self.position_q8 as f32 / 256.0
     }
 
@@ -99,7 +106,8 @@ impl FocusCell {
         largest: 0,
         peak: 0,
         bend: 0,
-        wide: 0,
+        slope: 0,
+        near: 0,
         choice: 0,
         position: 0,
         sum: 0,
@@ -144,8 +152,8 @@ impl FocusCell {
         }
         match last {
             0..10 => {}
-            10 => (0..=WIDE).for_each(|candidate| self.consider(candidate, frames)),
-            _ => self.consider(last - WIDE, frames),
+            10 => self.consider(0..WIDE + 1, frames),
+            _ => self.consider(last - WIDE..last - WIDE + 1, frames),
         }
     }
 
@@ -153,41 +161,56 @@ impl FocusCell {
     pub(super) fn finish(&mut self, frames: u32, shift: u16) {
         self.complete(frames, shift);
         let first = if frames < FRAMES as u32 { 0 } else { frames - WIDE };
-        (first..frames).for_each(|candidate| self.consider(candidate, frames));
+        self.consider(first..frames, frames);
     }
 
     fn at(&self, frame: u32) -> u32 {
         self.recent.get(frame as usize % FRAMES).copied().unwrap_or(0).into()
     }
 
-    /// Takes `candidate` as the peak if it and its neighbours are sharper than those of the peak so far.
-    fn consider(&mut self, candidate: u32, frames: u32) {
+    /// Takes the best of `candidates` as the peak if it and its neighbours are sharper than those of the
+    /// peak so far.
+    fn consider(&mut self, candidates: Range<u32>, frames: u32) {
         let last = frames.saturating_sub(1);
-        let near = |by: isize| candidate.saturating_add_signed(by as i32).min(last);
-        let choice = CHOICE.iter().fold(0, |sum, &(by, weight)| sum + weight * self.at(near(by)));
-        if choice <= self.choice && candidate > 0 {
-            return;
+        let mut chosen = None;
+        for candidate in candidates {
+            let near = |by: isize| candidate.saturating_add_signed(by as i32).min(last);
+            let choice = CHOICE.iter().fold(0, |sum, &(by, weight)| sum + weight * self.at(near(by)));
+            if choice > self.choice || candidate == 0 {
+                self.choice = choice;
+                chosen = Some(candidate);
+            }
         }
-        self.choice = choice;
+        if let Some(candidate) = chosen {
+            self.locate(candidate, frames);
+        }
+    }
+
+    /// Fits a parabola to the fewest frames around `candidate` from which noise leaves its top within
+    /// [`STEADY`], or to those that leave it the least noise: a sharp peak is no parabola for long, and a
+    /// fit of many frames is drawn to the side on which it falls more slowly. The bend counts less 2.5
+    /// deviations, for a candidate was chosen as a maximum; without one that is surely more, the widest fit
+    /// counts.
+    fn locate(&mut self, candidate: u32, frames: u32) {
+        let last = frames.saturating_sub(1);
         self.peak = self.at(candidate) as u16;
-        let fit = |most: u32| {
-            let half = (last / 2).min(most);
-            let centre = candidate.min(last - half).max(half);
-            (self.fit(centre, half), centre == candidate)
-        };
-        let ((narrow, narrow_bend), _) = fit(NARROW);
-        let ((wide, wide_bend), is_inside) = fit(WIDE);
-        let [few, many] = BROAD[usize::from(!is_inside)];
-        let share =
-            (many.saturating_sub(wide_bend.into()) * 256).checked_div(many - few).unwrap_or(0).min(256);
-        let mix = |wide: u32, narrow: u32| {
-            // A position has 24 bits, and both are within a window of each other.
-            let apart = (wide as i32).wrapping_sub(narrow as i32);
-            narrow.saturating_add_signed(apart.wrapping_mul(share as i32).wrapping_add(128) >> 8)
-        };
-        self.position = mix(wide, narrow);
-        self.bend = mix(wide_bend.into(), narrow_bend.into()) as u16;
-        self.wide = share as u16;
+        let own = candidate.saturating_sub(OWN).max(1)..last.min(candidate + OWN + 1);
+        let bends = own.map(|frame| (self.at(frame - 1) + self.at(frame + 1)).abs_diff(2 * self.at(frame)));
+        self.near = bends.sum::<u32>().min(u16::MAX.into()) as u16;
+        let rough = self.rough_mean(frames);
+        let mut least = u32::MAX;
+        for (half, &(slope, unsure)) in (1..).zip(&FITS).take(last as usize / 2) {
+            let (position, bend) = self.fit(candidate.min(last - half).max(half), half);
+            let sure = u32::from(bend).saturating_sub(rough * unsure / 16);
+            let noise = (rough * slope).checked_div(sure).unwrap_or(u32::MAX);
+            if noise <= least {
+                least = noise;
+                (self.position, self.bend, self.slope) = (position, bend, slope as u16);
+            }
+            if noise < STEADY {
+                break;
+            }
+        }
     }
 
     /// The top of the parabola through the logarithms of the frames around `centre`, by weighted least
@@ -215,8 +238,6 @@ impl FocusCell {
             y1 += weight * d * (after - before);
             y2 += weight * d * d * both;
         }
-        // Without the mean of the logarithms, which changes nothing: with these weights `a y0 - b y2` of a
-        // constant is 0 only for a and b of the normal equations, as here.
         let bend = a * y0 - b * y2;
         let most = i64::from(half) << 8;
         let off = if bend > 0 {
@@ -233,18 +254,20 @@ impl FocusCell {
         if frames < Self::FEWEST_FRAMES {
             return Err(NoFocus::TooFewFrames { needed: Self::FEWEST_FRAMES });
         }
-        let height = u32::from(self.peak).saturating_sub(self.sum / frames);
-        if height < Self::SURE && 4 * height < 7 * self.rough_mean(frames) || height < Self::LEAST {
+        let mean = self.sum / frames;
+        let height = u32::from(self.peak).saturating_sub(mean);
+        // Of the five frames by which it was chosen: with noise alone in all frames their mean has half a
+        // deviation, and what is asked is 3.2.
+        let above = (self.choice / CHOICE_WEIGHT).saturating_sub(mean);
+        let is_noise = 8 * above < 13 * self.rough_mean(frames);
+        if height < Self::SURE && is_noise || height < Self::LEAST {
             return Err(NoFocus::Untextured);
         }
         let confidence = (height * 255 / (height + u32::from(OCTAVE))) as u8;
-        // Noise of deviation s changes the slope at the top by 0.21 s, with the wide fit by 0.11 s, and
-        // second differences by 1.95 s in the mean of their sizes. What else is in a window, nearer
-        // and farther, moves a peak by the more, the wider it is: by a twelfth of the distance at
-        // which it has fallen by half an octave, on rendered slopes and waves.
-        let (bend, wide) = (u32::from(self.bend).max(1), u32::from(self.wide));
-        let noise =
-            (self.rough_mean(frames) * (27 * (256 - wide) + 14 * wide)).checked_div(bend << 8).unwrap_or(0);
+        // What else is in a window, nearer and farther, moves a peak by the more, the wider it is: by a
+        // twelfth of the distance at which it has fallen by half an octave, on rendered slopes and waves.
+        let bend = u32::from(self.bend).max(1);
+        let noise = self.rough_mean(frames) * u32::from(self.slope) / bend;
         if noise > (frames * 12).max(256) {
             return Err(NoFocus::Broad);
         }
@@ -258,9 +281,13 @@ impl FocusCell {
         })
     }
 
-    /// The mean size of second differences.
+    /// The mean size of second differences, without the peak's own where there are others.
     fn rough_mean(&self, frames: u32) -> u32 {
-        self.rough.checked_div(frames.saturating_sub(2)).unwrap_or(0)
+        let (sum, count) = match frames {
+            ENOUGH.. => (self.rough.saturating_sub(self.near.into()), frames - 2 - (2 * OWN + 1)),
+            _ => (self.rough, frames.saturating_sub(2)),
+        };
+        sum.checked_div(count).unwrap_or(0)
     }
 
     /// A peak so high is no noise: twice the mean.

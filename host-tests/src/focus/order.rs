@@ -2,8 +2,9 @@
 //!
 //! From frame to frame the sharpness of every part of the picture changes little, and over the stack it rises
 //! to one peak and falls again. A frame that is far from both of its neighbours, which are near to each
-//! other, stands in the wrong place or shows something else; where sharpness rises and falls over and over
-//! again, the camera moved and not its lens.
+//! other, stands in the wrong place or shows something else, and so does the first or last one that is far
+//! from its neighbour, which is near to the next; where sharpness rises and falls over and over again, the
+//! camera moved and not its lens.
 
 use image::GrayImage;
 
@@ -19,10 +20,15 @@ const LEAST_SIDE: u32 = 8;
 const FARTHER: f64 = 2.7;
 const STEPS: f64 = 4.0;
 /// How many times as far the sharpness of a part goes up and down as one rise and one fall would: those of
-/// stacks 1.0 to 1.1, with a frame in the wrong place up to 1.5, of a drive 3.4.
+/// stacks 1.0, with whatever noise, of drives 2.3 and more.
 const RESTLESS: f64 = 1.7;
 /// Changes of a part that count, octaves.
 const LEAST_RISE: f64 = 0.3;
+/// What goes up and down by less than twice that share of a part's rise, or by so many octaves, is noise.
+const PLAY: f64 = 0.125;
+const LEAST_PLAY: f64 = 0.075;
+/// Of how many parts one has to change for anything to be said.
+const TELLING: usize = 4;
 /// Of how many frames one may be left out.
 const MOST_OUT: usize = 5;
 
@@ -65,10 +71,12 @@ impl Look {
     }
 }
 
-/// How often the sharpness of most parts rises and falls, in one rise and one fall; `None` of parts that
-/// hardly change.
+/// How often the sharpness of most parts rises and falls, in one rise and one fall; `None` where hardly any
+/// part changes.
 pub fn restlessness(looks: &[Look]) -> Option<f64> {
-    median((0..looks.first()?.0.len()).filter_map(|part| unrest(looks.iter(), part)).collect())
+    let parts = looks.first()?.0.len();
+    let all: Vec<f64> = (0..parts).filter_map(|part| unrest(looks.iter(), part)).collect();
+    if TELLING * all.len() < parts { None } else { median(all) }
 }
 
 /// What the frames with these looks are. Of fewer than six nothing can be said: they count as a stack.
@@ -83,7 +91,12 @@ pub fn order(looks: &[Look]) -> Order {
         let off = steps[k - 1] + steps[k];
         off > FARTHER * looks[k - 1].distance(&looks[k + 1]) && off > STEPS * usual
     };
-    let out: Vec<usize> = (1..n - 1).filter(is_off).collect();
+    let is_stray = |step: f64, beside: &[f64]| {
+        step > STEPS * usual && beside.iter().all(|beside| step > FARTHER * beside)
+    };
+    let first = is_stray(steps[0], &steps[1..3]).then_some(0);
+    let last = is_stray(steps[n - 2], &steps[n - 4..n - 2]).then_some(n - 1);
+    let out: Vec<usize> = first.into_iter().chain((1..n - 1).filter(is_off)).chain(last).collect();
     let kept: Vec<Look> =
         looks.iter().enumerate().filter(|(k, _)| !out.contains(k)).map(|(_, look)| look.clone()).collect();
     let is_restless = restlessness(&kept).is_some_and(|restless| restless > RESTLESS);
@@ -94,15 +107,26 @@ pub fn order(looks: &[Look]) -> Order {
 }
 
 /// How far the sharpness of a part goes up and down, in one rise to its most and one fall from it; `None`
-/// where it hardly changes. Means of three frames, against noise.
+/// where it hardly changes. Against noise means of three frames are followed with some play, as by a loose
+/// coupling: what goes to and fro within it does not count.
 fn unrest<'a>(looks: impl Iterator<Item = &'a Look>, part: usize) -> Option<f64> {
     let values: Vec<f64> = looks.map(|look| look.0[part]).collect();
     let smooth: Vec<f64> = values.windows(3).map(|three| three.iter().sum::<f64>() / 3.0).collect();
     let (least, most) =
         smooth.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), &v| (a.min(v), b.max(v)));
-    let way: f64 = smooth.windows(2).map(|pair| (pair[1] - pair[0]).abs()).sum();
-    let rise = (2.0 * most - smooth.first()? - smooth.last()?).max(most - least);
-    (most - least > LEAST_RISE).then(|| way / rise)
+    if most - least <= LEAST_RISE {
+        return None;
+    }
+    let play = (PLAY * (most - least)).max(LEAST_PLAY);
+    let first = *smooth.first()?;
+    let (mut at, mut highest, mut lowest, mut way) = (first, first, first, 0.0);
+    for value in smooth {
+        let next = at.clamp(value - play, value + play);
+        way += (next - at).abs();
+        (at, highest, lowest) = (next, highest.max(next), lowest.min(next));
+    }
+    let rise = (2.0 * highest - first - at).max(highest - lowest);
+    (rise > 0.0).then(|| way / rise)
 }
 
 fn median(mut values: Vec<f64>) -> Option<f64> {

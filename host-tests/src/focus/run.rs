@@ -1,4 +1,4 @@
-//! A focus stack through the core's map: where each pixel is in focus, how sure that is, and a picture that
+//! A focus stack through the core's maps: where each pixel is in focus, how sure that is, and a picture that
 //! is sharp all over.
 
 use super::memory::MapMemory;
@@ -6,17 +6,17 @@ use super::stack::{Frame, StackError};
 use image::RgbImage;
 use stereopsis::focus::{
     Breathing, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, FocusScale, NoFocus, median_row,
-    plane_row,
+    narrowest_steady, plane_row,
 };
 
-/// What a stack tells, a value for each cell, row by row.
+/// What a stack tells, a value for each pixel, row by row.
 #[derive(Clone, Debug)]
 pub struct FocusResult {
-    /// Cells in a row.
+    /// Pixels in a row.
     pub width: usize,
     /// The peaks.
     pub peaks: Vec<Result<FocusPeak, NoFocus>>,
-    /// Every cell as in the frame in which it was sharpest.
+    /// Every pixel as in the frame in which it was sharpest.
     pub picture: RgbImage,
 }
 
@@ -40,60 +40,87 @@ pub enum FocusError {
     },
 }
 
-/// Passes all frames through the core's map, each magnified as `breathing` tells of its index, and takes
-/// medians of answers, then planes through them.
+/// What an interpolated sharpness moves a peak by, 1/256 frame: an eighth of a frame, of which no roughness
+/// from frame to frame tells.
+const BREATHING_NOISE: u32 = 32;
+
+/// Passes all frames, `width` by `height` pixels, through maps of the core with windows of several sizes. The
+/// frames are as they are, or magnified as `breathing` says. A pixel's answer is that of the narrowest
+/// window in which it is steady; then medians of answers are taken, and planes through them.
 pub fn run(
-    config: &FocusConfig,
+    (width, height): (u16, u16),
     frames: impl IntoIterator<Item = Result<Frame, StackError>>,
-    breathing: impl Fn(usize) -> Result<Breathing, FocusLineError>,
+    breathing: Option<&FocusScale<'_>>,
 ) -> Result<FocusResult, FocusError> {
-    let (columns, rows, side) = (config.columns(), config.rows(), usize::from(config.cell_px));
-    let (width, height) = (usize::from(config.width), usize::from(config.height));
-    let mut memory = MapMemory::new(config);
-    let mut map = memory.view()?;
-    map.start(config)?;
-    let mut picture = RgbImage::new(config.width.into(), config.height.into());
+    // Beside those that are asked the map of the picture that is sharp all over: its window averages noise
+    // out, and it has a cell for each pixel.
+    let (configs, pictured) = match breathing {
+        Some(_) => {
+            let [narrow, wide] = FocusConfig::breathing_windows(width, height);
+            ([FocusConfig::pixels(width, height), narrow, wide], 0)
+        }
+        None => (FocusConfig::windows(width, height), 1),
+    };
+    let mut memories = configs.each_ref().map(MapMemory::new);
+    let mut maps = Vec::new();
+    for (memory, config) in memories.iter_mut().zip(&configs) {
+        let mut map = memory.view()?;
+        map.start(config)?;
+        maps.push(map);
+    }
+    let (width, height) = (usize::from(width), usize::from(height));
+    let mut picture = RgbImage::new(width as u32, height as u32);
+    let mut count = 0;
     for (index, frame) in frames.into_iter().enumerate() {
         let Frame { grey, colours } = frame?;
         let named = |source| FocusError::Frame { frame: index + 1, source };
-        let scale = breathing(index).map_err(named)?;
-        map.begin_frame(scale).map_err(named)?;
-        let mut copy = |row: usize, column: usize| {
-            for y in row * side..((row + 1) * side).min(height) {
-                for x in column * side..((column + 1) * side).min(width) {
-                    let from = (scale.source(x, width) as u32, scale.source(y, height) as u32);
-                    picture.put_pixel(x as u32, y as u32, *colours.get_pixel(from.0, from.1));
-                }
-            }
+        let scale = breathing.map_or(Ok(Breathing::NONE), |scale| scale.breathing(index)).map_err(named)?;
+        let mut copy = |y: usize, x: usize| {
+            let from = (scale.source(x, width) as u32, scale.source(y, height) as u32);
+            picture.put_pixel(x as u32, y as u32, *colours.get_pixel(from.0, from.1));
         };
-        for line in grey.chunks_exact(width) {
-            map.push(line, |row| {
-                let sharper = row.sharper.iter().enumerate().filter(|(_, is_sharper)| **is_sharper);
-                sharper.for_each(|(column, _)| copy(row.index, column));
-            })
-            .map_err(named)?;
+        for (window, map) in maps.iter_mut().enumerate() {
+            map.begin_frame(scale).map_err(named)?;
+            for line in grey.chunks_exact(width) {
+                map.push(line, |row| {
+                    let sharper = row.sharper.iter().enumerate().filter(|(_, is_sharper)| **is_sharper);
+                    sharper.filter(|_| window == pictured).for_each(|(column, _)| copy(row.index, column));
+                })
+                .map_err(named)?;
+            }
         }
+        count = index + 1;
     }
-    let frames = map.frames() as usize;
-    map.finish().map_err(|source| FocusError::Frame { frame: frames, source })?;
-    let raw: Vec<_> = (0..columns * rows).map(|i| map.peak(i % columns, i / columns)).collect();
+    for map in &mut maps {
+        map.finish().map_err(|source| FocusError::Frame { frame: count, source })?;
+    }
+    let (asked, more) = if breathing.is_some() { (1.., BREATHING_NOISE) } else { (0.., 0) };
+    let answer = |i: usize| {
+        let mut answers = [Err(NoFocus::Untextured); 3];
+        for ((answer, map), config) in answers.iter_mut().zip(&maps).zip(&configs) {
+            let side = usize::from(config.cell_px);
+            let peak = map.peak(i % width / side, i / width / side);
+            *answer = peak.map(|peak| FocusPeak { noise_q8: peak.noise_q8 + more, ..peak });
+        }
+        narrowest_steady(&answers[asked.clone()])
+    };
+    let raw: Vec<_> = (0..width * height).map(answer).collect();
     let mut peaks = raw.clone();
-    for (y, out) in peaks.chunks_exact_mut(columns).enumerate() {
-        let near =
-            [y.saturating_sub(2), y.saturating_sub(1), y, (y + 1).min(rows - 1), (y + 2).min(rows - 1)];
-        median_row(near.map(|y| &raw[y * columns..][..columns]), out);
-        plane_row(&raw, columns, y, out);
+    for (y, out) in peaks.chunks_exact_mut(width).enumerate() {
+        let rows = [y.saturating_sub(2), y.saturating_sub(1), y, y + 1, y + 2].map(|y| y.min(height - 1));
+        median_row(rows.map(|y| &raw[y * width..][..width]), out);
+        plane_row(&raw, width, y, out);
     }
-    Ok(FocusResult { width: columns, peaks, picture })
+    Ok(FocusResult { width, peaks, picture })
 }
 
 impl FocusResult {
-    /// The frames in which the cells are in focus, from 1; `f32::INFINITY` where there is no answer.
+    /// The frames in which the pixels are in focus, from 1; `f32::INFINITY` where there is no answer.
     pub fn index(&self) -> Vec<f32> {
         self.peaks.iter().map(|peak| peak.map_or(f32::INFINITY, |peak| peak.position() + 1.0)).collect()
     }
 
-    /// The frames in which the cells are in focus, as numbers of a stack of which frames were left out;
+    /// The frames in which the pixels are in focus, as numbers of a stack of which frames were left out;
     /// `f32::INFINITY` where there is no answer. `numbers` has the number of each frame of the map. Between
     /// two frames lies what lies between their numbers, and nothing lies beyond the last.
     pub fn index_in(&self, numbers: &[usize]) -> Vec<f32> {
@@ -118,7 +145,7 @@ impl FocusResult {
         self.peaks.iter().map(|peak| peak.as_ref().map_or(f32::INFINITY, depth)).collect()
     }
 
-    /// How many cells have an answer.
+    /// How many pixels have an answer.
     pub fn answers(&self) -> usize {
         self.peaks.iter().flatten().count()
     }

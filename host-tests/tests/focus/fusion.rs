@@ -4,7 +4,7 @@ use image::GrayImage;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::depth::{Depth, DepthScale, fuse};
-use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
+use stereopsis::focus::{FocusScale, ThinLens};
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::matching::{Block, Config};
 use stereopsis::pipeline::Pipeline;
@@ -80,8 +80,7 @@ fn focus() -> Vec<Option<Depth>> {
         let grey = scene.render(image.into(), seed);
         Ok(Frame { colours: image::DynamicImage::ImageLuma8(grey.clone()).into_rgb8(), grey })
     });
-    let config = FocusConfig::pixels(WIDTH as u16, HEIGHT as u16);
-    let found = run(&config, frames, |_| Ok(Breathing::NONE)).expect("a map");
+    let found = run((WIDTH as u16, HEIGHT as u16), frames, None).expect("a map");
     let scale = FocusScale::new(ThinLens::new(4e-3).expect("a lens"), &positions).expect("a scale");
     found.peaks.iter().map(|peak| scale.depth(peak.as_ref().ok()?).ok()).collect()
 }

@@ -2,6 +2,7 @@
 
 use crate::stacks::usual;
 use image::{GrayImage, Luma};
+use stereopsis_host::focus::evaluation;
 use stereopsis_host::focus::order::{Look, Order, order, restlessness};
 use stereopsis_host::scene::{MovingScene, Random};
 
@@ -18,6 +19,13 @@ fn a_stack_is_one() {
     back.reverse();
     assert_eq!(order(&looks(&back)), Order::Stack(Vec::new()));
     assert_eq!(order(&looks(&frames[..12])), Order::Stack(Vec::new()));
+}
+
+#[test]
+fn a_noisy_stack_is_one() {
+    for stack in evaluation::stacks() {
+        assert_eq!(order(&looks(&stack.frames(10.0))), Order::Stack(Vec::new()), "{}", stack.name);
+    }
 }
 
 #[test]
@@ -39,9 +47,11 @@ fn a_spoiled_frame_is_named() {
     let noise = GrayImage::from_fn(width, height, |_, _| Luma([random.byte()]));
     let stray = MovingScene::street(width as u16, height as u16, 1, 0.5, 7).frame(0).0;
     for spoiled in [GrayImage::new(width, height), noise, stray] {
-        let mut all = frames.clone();
-        all[9] = spoiled;
-        assert_eq!(order(&looks(&all)), Order::Stack(vec![9]));
+        for place in [0, 9, frames.len() - 1] {
+            let mut all = frames.clone();
+            all[place] = spoiled.clone();
+            assert_eq!(order(&looks(&all)), Order::Stack(vec![place]));
+        }
     }
 }
 

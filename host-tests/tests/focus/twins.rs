@@ -10,7 +10,7 @@ use stereopsis::focus::{
 };
 use stereopsis_host::focus::memory::MapMemory;
 use stereopsis_host::scene::Random;
-use stereopsis_host::twin::focus as twin;
+use stereopsis_host::twin::{focus as twin, focus_smoothing as smoothing};
 
 fn noise(width: u32, height: u32, seed: u64, contrast: u8) -> GrayImage {
     let mut random = Random::new(seed);
@@ -130,18 +130,20 @@ proptest! {
             median_row([at(y - 2), at(y - 1), at(y), at(y + 1), at(y + 2)], out);
         }
         let middle: Vec<_> = medians.iter().map(plain).collect();
-        prop_assert_eq!(&middle, &twin::median(columns, &expected));
+        prop_assert_eq!(&middle, &smoothing::median(columns, &expected));
 
         for (y, out) in medians.chunks_exact_mut(columns).enumerate() {
             plane_row(&peaks, columns, y, out);
         }
-        for (found, exact) in medians.iter().zip(twin::planes(columns, &expected, &middle)) {
+        for (found, exact) in medians.iter().zip(smoothing::planes(columns, &expected, &middle)) {
             // Rounding to 1/256, and that of 49 sums of 24 bits in a system whose condition the ridge bounds
-            // by 1000.
-            let off = found.ok().map(|p| f64::from(p.position_q8)).zip(exact)
-                .map(|(found, exact)| (found - exact).abs());
-            prop_assert!(found.is_ok() == exact.is_some() && off.is_none_or(|off| off <= 1.0), "{:?} {:?}",
-                found, exact);
+            // by 1000; a step that is nearly too long may be taken or not.
+            let is_near = match (found.ok(), exact) {
+                (Some(found), Some((exact, is_close))) =>
+                    is_close || (f64::from(found.position_q8) - exact).abs() <= 1.0,
+                (found, exact) => found.is_none() && exact.is_none(),
+            };
+            prop_assert!(is_near, "{:?} {:?}", found, exact);
         }
     }
 }

@@ -3,7 +3,6 @@
 //! `cargo xtask test` runs them when `STEREO_DATA` is set.
 
 use std::path::PathBuf;
-use stereopsis::focus::{Breathing, FocusConfig};
 use stereopsis_host::focus::run::{FocusResult, run};
 use stereopsis_host::focus::stack::Stack;
 
@@ -11,8 +10,7 @@ fn answer(name: &str) -> FocusResult {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds focus/");
     let stack = Stack::open(&PathBuf::from(data).join("focus").join(name)).expect("a stack");
     let (width, height) = stack.size();
-    let config = FocusConfig::pixels(width as u16, height as u16);
-    run(&config, (0..stack.len()).map(|i| stack.frame(i)), |_| Ok(Breathing::NONE)).expect("a map")
+    run((width as u16, height as u16), (0..stack.len()).map(|i| stack.frame(i)), None).expect("a map")
 }
 
 #[test]

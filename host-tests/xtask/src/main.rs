@@ -11,6 +11,7 @@
 //! * `view` builds the live page's module and shows the page.
 //! * `book` writes the pages of docs/ as a book.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
+//! * `focus` measures how right depth from focus is on rendered stacks.
 //! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
 //! * `cross` checks the core for all targets and with every feature.
@@ -36,6 +37,7 @@ mod cross;
 mod elf;
 mod examples;
 mod firmware;
+mod focus;
 mod fuzz;
 mod growth;
 mod header;
@@ -91,6 +93,8 @@ enum Chore {
     Book(book::Arguments),
     /// Measures how right the methods are on real pairs with noise and unequal cameras, beside OpenCV.
     Altered(altered::Arguments),
+    /// Measures how right depth from focus is on rendered stacks, beside the plain method.
+    Focus(focus::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
     Readme {
         /// Writes nothing; fails when a part differs from what would be written.
@@ -122,7 +126,7 @@ fn main() -> ExitCode {
                 one_line(&usage_line(
                     &error,
                     "the chores are test, firmware, growth, rtl, fuzz, miri, mutants, soak, view, book, \
-                        altered, c, cross, header, publish and readme"
+                        altered, focus, c, cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -139,6 +143,7 @@ fn main() -> ExitCode {
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),
         Chore::Book(arguments) => book::run(&arguments),
+        Chore::Focus(arguments) => focus::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run(),

@@ -169,18 +169,35 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     let choice = |i: i64| at(i - 2) + 2 * at(i - 1) + 3 * at(i) + 2 * at(i + 1) + at(i + 2);
     // The first of the largest.
     let candidate = (0..=last).rev().max_by_key(|&i| choice(i))?;
-    let (narrow, narrow_bend, _) = parabola(&at, candidate, (last / 2).min(3), last)?;
-    let (wide, wide_bend, is_inside) = parabola(&at, candidate, (last / 2).min(5), last)?;
-    let (few, many) = if is_inside { (40, 80) } else { (15, 30) };
-    let share = ((many - wide_bend) * 256 / (many - few)).clamp(0, 256);
-    let mix = |wide: i64, narrow: i64| (wide * share + narrow * (256 - share) + 128) / 256;
-    let (place, bend) = (mix(wide.max(0), narrow.max(0)), mix(wide_bend, narrow_bend).max(1));
-    let rough: i64 = logs.windows(3).map(|w| (w[0] + w[2] - 2 * w[1]).abs()).sum::<i64>() / (last - 1);
-    let height = (at(candidate) - logs.iter().sum::<i64>() / (last + 1)).max(0);
-    if height < 116 || height < 2048 && 4 * height < 7 * rough {
+    let bend_of = |i: i64| (at(i - 1) + at(i + 1) - 2 * at(i)).abs();
+    // Roughness as far as frames have come when the peak is located: five after the candidate.
+    let seen = ((candidate + 6).max(11)).min(last + 1);
+    let own: i64 = ((candidate - 2).max(1)..=(candidate + 2).min(seen - 2)).map(bend_of).sum();
+    let rough_of = |frames: i64| {
+        let sum: i64 = (1..frames - 1).map(bend_of).sum();
+        if frames >= 10 { (sum - own.min(65535)).max(0) / (frames - 7) } else { sum / (frames - 2) }
+    };
+    let (rough, so_far, ends) = (rough_of(last + 1), rough_of(seen), seen - 1);
+    let fits: Vec<_> = [(93, 50), (44, 11), (27, 5), (19, 3), (14, 2)]
+        .iter()
+        .zip(1..=ends / 2)
+        .filter_map(|(&(slope, unsure), half)| {
+            let (place, bend) = parabola(&at, candidate, half, ends)?;
+            let sure = bend - so_far * unsure / 16;
+            Some((if sure <= 0 { i64::MAX } else { so_far * slope / sure }, place.max(0), bend, slope))
+        })
+        .collect();
+    let steady = fits.iter().find(|(noise, ..)| *noise < 26);
+    // The last of the least.
+    let &(_, place, bend, slope) = steady.or_else(|| fits.iter().rev().min_by_key(|(noise, ..)| *noise))?;
+    let mean = logs.iter().sum::<i64>() / (last + 1);
+    let height = (at(candidate) - mean).max(0);
+    let above = (choice(candidate) / 9 - mean).max(0);
+    if height < 116 || height < 2048 && 8 * above < 13 * rough {
         return None;
     }
-    let noise = rough * (27 * (256 - share) + 14 * share) / (bend * 256);
+    let bend = bend.max(1);
+    let noise = rough * slope / bend;
     if noise > ((last + 1) * 12).max(256) {
         return None;
     }
@@ -189,9 +206,8 @@ pub fn peak(sharpness: &[i64], shifts: &[i64]) -> Option<Peak> {
     Some([place, sigma, noise.min(most), height * 255 / (height + 2048)])
 }
 
-/// The top of the parabola through the logarithms around a candidate, its bend, and whether the candidate is
-/// in the middle of them.
-fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64, bool)> {
+/// The top of the parabola through the logarithms around a candidate, and its bend.
+fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Option<(i64, i64)> {
     let centre = candidate.clamp(half, last - half);
     let weights: &[i64] = match half {
         5 => &[4, 4, 4, 3, 2, 1],
@@ -219,7 +235,7 @@ fn parabola(at: &dyn Fn(i64) -> i64, candidate: i64, half: i64, last: i64) -> Op
     } else {
         slope_top.signum() * most
     };
-    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535), centre == candidate))
+    Some((centre * 256 + off, (bend_top / bend_under).clamp(0, 65535)))
 }
 
 /// What each frame's brightness adds to its logarithms.
@@ -241,59 +257,4 @@ pub fn peaks(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> Vec<
     let shifts = shifts(frames, config.exposure_varies);
     let of_cell = |i: usize| volume.iter().map(|numbers| numbers.values[i]).collect::<Vec<_>>();
     (0..config.cells()).map(|i| peak(&of_cell(i), &shifts)).collect()
-}
-
-/// Answers replaced by the median place of those around them.
-pub fn median(columns: usize, peaks: &[Option<Peak>]) -> Vec<Option<Peak>> {
-    let rows = (peaks.len() / columns) as i64;
-    let at = |x: i64, y: i64| peaks[y.clamp(0, rows - 1) as usize * columns + x as usize];
-    let around = |i: usize| {
-        let [_, sigma, noise, confidence] = peaks[i]?;
-        let (x, y) = ((i % columns) as i64, (i / columns) as i64);
-        let near = (y - 2..=y + 2).flat_map(|v| (x - 2..=x + 2).map(move |u| (u, v)));
-        let inside = near.filter(|&(u, _)| (0..columns as i64).contains(&u));
-        let mut places: Vec<i64> = inside.filter_map(|(u, v)| at(u, v)).map(|[place, ..]| place).collect();
-        places.sort_unstable();
-        Some([places[(places.len() - 1) / 2], sigma, noise, confidence])
-    };
-    (0..peaks.len()).map(around).collect()
-}
-
-/// Answers of more than a tenth of a frame of noise replaced by the plane through those around the median, by
-/// least squares.
-pub fn planes(columns: usize, peaks: &[Option<Peak>], medians: &[Option<Peak>]) -> Vec<Option<f64>> {
-    use nalgebra::{Matrix3, Vector3};
-    let rows = (peaks.len() / columns) as i64;
-    let at = |x: i64, y: i64| {
-        let is_inside = (0..columns as i64).contains(&x) && (0..rows).contains(&y);
-        is_inside.then(|| peaks[y as usize * columns + x as usize]).flatten()
-    };
-    let fitted = |(i, median): (usize, &Option<Peak>)| {
-        let [place, _, noise, _] = (*median)?.map(|v| v as f64);
-        let step = match noise as i64 {
-            ..26 => return Some(place),
-            26..51 => 1,
-            51..102 => 2,
-            _ => 4,
-        };
-        let (x, y) = ((i % columns) as i64, (i / columns) as i64);
-        let (mut squares, mut values) = (Matrix3::<f64>::zeros(), Vector3::<f64>::zeros());
-        for (dy, dx) in (-3..=3).flat_map(|dy| (-3..=3).map(move |dx| (dy, dx))) {
-            let Some(beside) = at(x + step * dx, y + step * dy) else { continue };
-            let [near, _, near_noise, _] = beside.map(|v| v as f64);
-            // Whole numbers, of which f64 has the squares exactly: the bound itself is within.
-            let beyond = ((near - place).abs() - 90.0).max(0.0);
-            if beyond * beyond <= 9.0 * (noise * noise + near_noise * near_noise) {
-                let unknowns = Vector3::new(1.0, dx as f64, dy as f64);
-                let weight = 38.0 * 38.0 / (near_noise * near_noise + 38.0 * 38.0);
-                squares += weight * unknowns * unknowns.transpose();
-                values += weight * (near - place) * unknowns;
-            }
-        }
-        let ridge = 1e-3 * squares[(0, 0)];
-        squares += Matrix3::from_diagonal(&Vector3::new(0.0, ridge, ridge));
-        let plane = squares.lu().solve(&values).unwrap_or_default();
-        Some((place + plane[0]).max(0.0))
-    };
-    medians.iter().enumerate().map(fitted).collect()
 }

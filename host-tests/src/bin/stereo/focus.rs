@@ -8,7 +8,7 @@ use image::RgbImage;
 use std::fmt::Write as _;
 use std::io::Write as _;
 use std::path::PathBuf;
-use stereopsis::focus::{Breathing, FocusConfig, FocusScale, ThinLens};
+use stereopsis::focus::{FocusScale, ThinLens};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::focus::breathing::Agreement;
 use stereopsis_host::focus::order::{Look, Order, order};
@@ -86,16 +86,12 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     Staging::probe(&args.out)?;
     let (width, height) = stack.size();
     // Images have at most 4096 columns and rows.
-    let config = FocusConfig::pixels(width as u16, height as u16);
-    let is_breathing = match &scale {
-        Some(scale) => breathes(&stack, &kept, scale)?,
-        None => false,
+    let size = (width as u16, height as u16);
+    let breathing = match &scale {
+        Some(scale) => breathes(&stack, &kept, scale)?.then_some(scale),
+        None => None,
     };
-    let breathing = |frame| match &scale {
-        Some(scale) if is_breathing => scale.breathing(frame),
-        _ => Ok(Breathing::NONE),
-    };
-    let result = map(&config, kept.iter().map(|&index| stack.frame(index)), breathing)?;
+    let result = map(size, kept.iter().map(|&index| stack.frame(index)), breathing)?;
     let numbers: Vec<usize> = kept.iter().map(|index| index + 1).collect();
 
     let mut staging = Staging::new(&args.out)?;
@@ -129,7 +125,7 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     let mut text =
         format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", kept.len());
     if scale.is_some() {
-        let grow = if is_breathing {
+        let grow = if breathing.is_some() {
             "grow as the lens says: corrected"
         } else {
             "do not grow as the lens says: left as they are"

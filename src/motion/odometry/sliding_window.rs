@@ -23,6 +23,8 @@ pub struct Refinement<T: Real, const VIEWS: usize, const POINTS: usize, const OB
     /// Where the views stand in the frame of the oldest.
     poses: Vec<Pose<T>, VIEWS>,
     rows: [Row<T, VIEWS>; POINTS],
+    /// Where the row of the point with this place in the odometry's memory is, if it still has one.
+    places: [u16; POINTS],
     /// The row of each point that is adjusted.
     owners: Vec<u16, POINTS>,
     window: Window<RectifiedView<T>, T, 6, VIEWS, POINTS, OBSERVATIONS>,
@@ -97,6 +99,7 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
             view: Vec::new(),
             poses: Vec::new(),
             rows: [Row::EMPTY; POINTS],
+            places: [0; POINTS],
             owners: Vec::new(),
             window: Window::new(),
         }
@@ -141,9 +144,9 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         let view = self.poses.len();
         // There is room: the oldest has gone.
         let _ = self.poses.push(pose);
-        let mut common = 0;
+        let (mut common, mut free) = (0, 0);
         for point in seen {
-            common += usize::from(self.note(view, &pose, &point));
+            common += usize::from(self.note(view, &pose, &point, &mut free));
         }
         if view == 0 {
             return Ok(None);
@@ -184,11 +187,28 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         }
     }
 
+    /// The row of a point, if it has one.
+    fn row_of(&self, name: (u16, u16)) -> Option<usize> {
+        let is_its = |row: &Row<T, VIEWS>| row.seen != 0 && row.name == name;
+        match self.places.get(usize::from(name.0)) {
+            Some(&place) => self.rows.get(usize::from(place)).filter(|row| is_its(row)).map(|_| place.into()),
+            // The odometry has more points than there are rows.
+            None => self.rows.iter().position(is_its),
+        }
+    }
+
     /// Keeps a view's observation of a point, if there is room, and says whether the point was seen before.
-    fn note(&mut self, view: usize, pose: &Pose<T>, point: &ObservedPoint<T>) -> bool {
-        let known = self.rows.iter().position(|row| row.seen != 0 && row.name == point.name);
-        let place = known.or_else(|| self.rows.iter().position(|row| row.seen == 0));
-        let Some(row) = place.and_then(|place| self.rows.get_mut(place)) else { return false };
+    /// All rows before `free` are taken.
+    fn note(&mut self, view: usize, pose: &Pose<T>, point: &ObservedPoint<T>, free: &mut usize) -> bool {
+        let known = self.row_of(point.name);
+        if known.is_none() {
+            *free += self.rows.iter().skip(*free).take_while(|row| row.seen != 0).count();
+            if let Some(place) = self.places.get_mut(usize::from(point.name.0)) {
+                // POINTS is within 16 bits.
+                *place = *free as u16;
+            }
+        }
+        let Some(row) = self.rows.get_mut(known.unwrap_or(*free)) else { return false };
         if known.is_none() {
             (row.name, row.deep) = (point.name, 0);
         }

@@ -260,11 +260,19 @@ impl Template {
         out: &mut [f32; COUNT],
     ) -> Option<()> {
         let [right, down] = self.part;
+        let from_middle = |i: usize, part: f32| i as f32 - REACH as f32 - part;
+        let along: [[f32; 2]; SIDE] = core::array::from_fn(|i| {
+            let a = from_middle(i, right);
+            [x + w[0][0] * a, y + w[1][0] * a]
+        });
         let mut sum = 0.0;
-        for (i, out) in out.iter_mut().enumerate() {
-            let (a, b) = ((i % SIDE) as f32 - REACH as f32 - right, (i / SIDE) as f32 - REACH as f32 - down);
-            *out = picture.sample(x + w[0][0] * a + w[0][1] * b, y + w[1][0] * a + w[1][1] * b)?;
-            sum += *out;
+        for (j, row) in out.chunks_exact_mut(SIDE).enumerate() {
+            let b = from_middle(j, down);
+            let across = [w[0][1] * b, w[1][1] * b];
+            for (out, [x, y]) in row.iter_mut().zip(along) {
+                *out = picture.sample(x + across[0], y + across[1])?;
+                sum += *out;
+            }
         }
         let mean = sum / COUNT as f32;
         out.iter_mut().for_each(|v| *v -= mean);

@@ -61,7 +61,8 @@ impl<'a> Picture<'a> {
         if !(x >= 0.0 && y >= 0.0) {
             return None;
         }
-        let (column, row) = (x as usize, y as usize);
+        // By way of 32 bits, which a processor of 64 has an instruction for; what is larger is outside.
+        let (column, row) = (x as u32 as usize, y as u32 as usize);
         let (&[a, b], &[c, d]) = (
             self.run(column, row, 2)?.first_chunk::<2>()?,
             self.run(column, row + 1, 2)?.first_chunk::<2>()?,

@@ -3,6 +3,7 @@
 use super::level::Level;
 use nalgebra::{Point2, Vector2};
 use std::f64::consts::TAU;
+use std::sync::LazyLock;
 
 /// A corner where two edges cross.
 #[derive(Clone, Copy, PartialEq, Debug)]
@@ -57,6 +58,18 @@ pub(super) fn find(level: &Level) -> Vec<Corner> {
     corners
 }
 
+/// The direction of the i-th place around a corner.
+static CIRCLE: LazyLock<[Vector2<f64>; AROUND]> =
+    LazyLock::new(|| std::array::from_fn(|i| towards(angle(i as f64))));
+
+fn angle(i: f64) -> f64 {
+    i * TAU / AROUND as f64
+}
+
+fn towards(angle: f64) -> Vector2<f64> {
+    Vector2::new(angle.cos(), angle.sin())
+}
+
 /// The corner at a place, if one is there.
 pub(super) fn look(level: &Level, place: Point2<f64>) -> Option<Corner> {
     RADII.iter().find_map(|&radius| sectors(level, place, radius))
@@ -66,10 +79,7 @@ fn sectors(level: &Level, place: Point2<f64>, radius: f64) -> Option<Corner> {
     if !level.is_inside(&place, radius) {
         return None;
     }
-    let towards = |angle: f64| Vector2::new(angle.cos(), angle.sin());
-    let angle = |i: f64| i * TAU / AROUND as f64;
-    let ring: [f32; AROUND] =
-        std::array::from_fn(|i| level.value(&(place + radius * towards(angle(i as f64)))));
+    let ring: [f32; AROUND] = CIRCLE.each_ref().map(|way| level.value(&(place + radius * way)));
     let (least, most) = ring.iter().fold((f32::MAX, f32::MIN), |(a, b), &v| (a.min(v), b.max(v)));
     let (middle, contrast) = ((least + most) / 2.0, (most - least) / 2.0);
     if contrast < LEAST_CONTRAST {

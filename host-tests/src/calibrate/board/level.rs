@@ -95,9 +95,10 @@ impl Level {
 
     /// Brightness between pixels.
     pub fn value(&self, p: &Point2<f64>) -> f32 {
-        let (x, y) = (p.x.floor(), p.y.floor());
-        let (fx, fy) = ((p.x - x) as f32, (p.y - y) as f32);
-        let (x, y) = (x as isize, y as isize);
+        // Without an instruction for it, `floor` is a call.
+        let floor = |x: f64| x as isize - isize::from((x as isize as f64) > x);
+        let (x, y) = (floor(p.x), floor(p.y));
+        let (fx, fy) = ((p.x - x as f64) as f32, (p.y - y as f64) as f32);
         let inside = |x: isize, y: isize| {
             let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
             let here = (x + 1 < self.width).then_some(y * self.width + x)?;

@@ -95,16 +95,17 @@ fn report_rotation<T: Real>(
     Step { motion: since, covariance, state, inliers: solved.kept, residual: solved.residual(0), ..shown }
 }
 
-/// Finds each recognised point by its pixels.
+/// Finds each point by its pixels: where it was recognised, or where it was seen last. Few corners of a small
+/// picture are found again by their descriptors, and without a unit their places cannot be predicted.
 fn align<T: Real>(now: &Moment<'_, T>, map: &mut PointMap<'_, T>, tracker: &mut Tracker<'_, T>) {
     let fine = now.sigma();
     tracker.matches.clear();
-    for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()) {
-        let Some(at) = track.now.filter(|_| track.used) else { continue };
-        let aligned = track.template.align(&now.frame.left, &UPRIGHT, at, 3.0).ok();
+    for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()).filter(|(_, track)| track.used) {
+        let start = track.now.unwrap_or(track.pixel);
+        let aligned = track.template.align(&now.frame.left, &UPRIGHT, start, 3.0).ok();
         let aligned = aligned.filter(|found| found.correlation > CORRELATED);
-        let place = aligned.map_or(at, |found| [found.x_px, found.y_px]);
-        track.now = Some(place);
+        let Some(place) = aligned.map(|found| [found.x_px, found.y_px]).or(track.now) else { continue };
+        (track.now, track.pixel) = (Some(place), place);
         let pixel = Point2::new(T::of(place[0].into()), T::of(place[1].into()));
         let Ok(at) = now.rig.camera.unproject(&pixel) else { continue };
         // A corner is three times as far off as what its pixels say.

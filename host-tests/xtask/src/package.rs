@@ -19,8 +19,8 @@ const FILES: [&str; 6] =
 /// Its version 0.3 is a bridge to the first one, for crates that stand between.
 const WITH_A_BRIDGE: &str = "defmt";
 
-/// A core that the unpacked package is checked for, beside this machine: one whose dependencies the cross checks
-/// have checked.
+/// A core that the unpacked package is checked for, beside this machine: one whose dependencies the cross
+/// checks have checked.
 const TARGET: &str = cross::NOT_BUILT[0];
 
 /// The test step.

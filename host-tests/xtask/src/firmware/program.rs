@@ -222,11 +222,13 @@ impl Program {
         Ok(Built { program: *self, elf: keep(self.board, "release/depth", &name)? })
     }
 
-    /// Builds another program of the same sizes, with the features named; the linked file.
+    /// Builds another program of the same sizes, with the features named; the linked file. The budget of
+    /// memory.x is the depth program's: what carries more than it gets all that the board has.
     pub fn build_other(&self, bin: &str, features: &str) -> Outcome<PathBuf> {
         let _turn = FOLDERS[self.folder()].lock().unwrap_or_else(PoisonError::into_inner);
         let name = format!("{self}-{bin}");
         let mut cargo = self.cargo("build --locked --release --quiet");
+        cargo.env("STEREO_MEMORY", "board");
         build(cargo.args(["--bin", bin, "--features", features]), &name)?;
         keep(self.board, &format!("release/{bin}"), &name)
     }

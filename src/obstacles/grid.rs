@@ -26,7 +26,7 @@ impl Cluster {
     /// Adds an answer that belongs to the group, or begins one; returns whether it did.
     #[inline(always)]
     fn take(&mut self, d: u16) -> bool {
-        if d.abs_diff(self.last) > Disparity::ONE && !self.is_empty() {
+        if !are_near(d, self.last) && !self.is_empty() {
             return false;
         }
         *self = Self { total: self.total.wrapping_add(1 << 24 | u32::from(d)), last: d };
@@ -39,6 +39,13 @@ impl Cluster {
         let mean = (sum + count / 2).checked_div(count)?;
         (count >= least).then_some(mean as u16)
     }
+}
+
+/// Whether two answers are within one px.
+#[inline(always)]
+fn are_near(a: u16, b: u16) -> bool {
+    const ONE: u32 = Disparity::ONE as u32;
+    (u32::from(a) + ONE).wrapping_sub(b.into()) <= 2 * ONE
 }
 
 /// The two groups of a cell that is being filled.
@@ -79,16 +86,37 @@ impl Filling {
         all
     }
 
+    /// [`Self::take`] of pixels of which one may have to be left out.
+    // Seldom, so that the loop over pixels stays small.
+    #[inline(never)]
+    fn take_flagged(&mut self, disparities: &[Disparity; 4], flags: &[PixelFlags; 4]) {
+        self.take(disparities, flags);
+    }
+
     /// Adds the pixels that count of four without a flag that leaves them out.
     #[inline(always)]
     fn take_four(&mut self, &[a, _, _, b]: &[Disparity; 4]) {
-        let [mut first, _] = self.0;
-        for d in [a, b] {
-            if d.is_some() && !first.take(d.raw()) {
+        // What is near to less than this is an answer.
+        const SOME: u16 = Disparity::NONE.raw() - Disparity::ONE;
+        let [first, _] = &mut self.0;
+        let joins = are_near(a.raw(), first.last) || first.is_empty();
+        if b.raw() < SOME && are_near(b.raw(), a.raw()) && joins {
+            let both = u32::from(a.raw()) + u32::from(b.raw());
+            *first = Cluster { total: first.total.wrapping_add((2 << 24) + both), last: b.raw() };
+        } else {
+            self.take_apart([a, b]);
+        }
+    }
+
+    /// Adds pixels that do not all join the first group, or have no answer.
+    // Seldom, so that the loop over pixels stays small.
+    #[inline(never)]
+    fn take_apart(&mut self, disparities: [Disparity; 2]) {
+        for d in disparities.into_iter().filter(|d| d.is_some()) {
+            if !self.0[0].take(d.raw()) {
                 self.take_second(d.raw());
             }
         }
-        self.0[0] = first;
     }
 
     /// The nearer of the groups that hold a quarter of the `count` pixels of the cell that count.
@@ -125,20 +153,7 @@ pub(super) fn fill(
             }
         }
     } else if let 4 = width {
-        // The default width, unrolled, with four flags in a word.
-        const LEFT_OUT_4: u32 = 0x0100_0001 * LEFT_OUT.bits() as u32;
-        let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
-        let mut all_4 = 0;
-        for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
-            let word = u32::from_le_bytes(flags.map(PixelFlags::bits));
-            all_4 |= word;
-            if word & LEFT_OUT_4 == 0 {
-                cell.take_four(disparities);
-            } else {
-                cell.take(disparities, flags);
-            }
-        }
-        all = all_4.to_le_bytes().into_iter().fold(0, |all, bits| all | bits);
+        all = fill_fours(cells, disparities, flags);
     } else {
         let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
         for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
@@ -146,6 +161,25 @@ pub(super) fn fill(
         }
     }
     PixelFlags::from_bits(all)
+}
+
+/// [`fill`] for cells of the default width, unrolled, with four flags in a word.
+// Apart, so that the loop has all registers.
+#[inline(never)]
+fn fill_fours(cells: &mut [Filling], disparities: &[Disparity], flags: &[PixelFlags]) -> u8 {
+    const LEFT_OUT_4: u32 = 0x0100_0001 * LEFT_OUT.bits() as u32;
+    let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
+    let mut all = 0;
+    for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
+        let word = u32::from_le_bytes(flags.map(PixelFlags::bits));
+        all |= word;
+        if word & LEFT_OUT_4 == 0 {
+            cell.take_four(disparities);
+        } else {
+            cell.take_flagged(disparities, flags);
+        }
+    }
+    all.to_le_bytes().into_iter().fold(0, |all, bits| all | bits)
 }
 
 #[cfg(test)]

@@ -58,16 +58,16 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
         if here.1 >> 8 < cells.farthest {
             continue;
         }
-        // The plane in 2^20ths of a step: at a row, and what a column has more. Both are below 2^50.
-        let off = |d: Disparity, expected_256ths: i32, beside: i64| {
-            let expected = (i64::from(expected_256ths) << 12) + beside;
-            let off = i32::from(d.raw()) + cells.offset - (expected >> 20) as i32;
+        // The plane in 256ths of a step: at a row, and what a column has more.
+        let off = |d: Disparity, expected_256ths: i32, beside_256ths: i32| {
+            let off = i32::from(d.raw()) + cells.offset - ((expected_256ths + beside_256ths) >> 8);
             (d.is_some() && off.abs() <= band).then_some(off)
         };
         let mut next = i64::from(plane.lean) * cells.right_16ths(0);
         let (mut n, mut p, mut x, mut pp, mut xp, mut xx) = (0_i32, 0_i32, 0_i32, 0_i32, 0_i64, 0_i32);
         for (column, ((&d, &d_above), &d_below)) in (0..).zip(here.0.iter().zip(above.0).zip(below.0)) {
-            let beside = next;
+            // Twice as far as a row's parallax goes: what is cut off is near to no answer.
+            let beside = (next >> 12).clamp(-(1 << 29), 1 << 29) as i32;
             next += per_column;
             let Some(off_here) = off(d, here.1, beside) else { continue };
             if off(d_above, above.1, beside).is_none() || off(d_below, below.1, beside).is_none() {

@@ -12,8 +12,10 @@ use crate::units::Disparity;
 const MOST: i32 = 16;
 /// What a change of the label costs: as much as one cell that contradicts.
 const CHANGE: u32 = 16;
-/// What a cell without an answer costs as anything but beyond.
-const UNANSWERED: [u32; 4] = [8, 8, 8, 0];
+/// What a cell without an answer costs as anything but beyond, by label.
+const UNANSWERED: u32 = u32::from_le_bytes([8, 8, 8, 0]);
+/// One for each label.
+const EACH: u32 = 0x0101_0101;
 /// Rows of pixels from which on a surface is high: two matching windows.
 const HIGH: u32 = 18;
 /// Fewest cells of a segment.
@@ -25,6 +27,30 @@ const DROP: usize = 1;
 const GROUND: usize = 2;
 /// Bit of a step whose disparity is another surface's.
 const BREAK: u8 = 1 << 6;
+
+/// Sums of the costs of the four labels, a byte each in the order of their numbers, less the least of them:
+/// 32 at most, as one row adds 16 to what a change of the label costs.
+struct Sums(u32);
+
+impl Sums {
+    /// Adds a row to each label's sum, or to that of a change from the cheapest label if that is less.
+    ///
+    /// `to_stay` is what staying costs beside that, `costs` what the row does. Returns the labels that stay, a
+    /// bit each, and the label whose sum is now the first of the least.
+    fn advance(&mut self, to_stay: u32, costs: u32) -> (u8, u8) {
+        let stay = self.0 + to_stay;
+        // No carry from byte to byte: a sum is below 64. Its highest bit says that a change costs less.
+        let changes = (stay + (0x7f - CHANGE) * EACH) & (0x80 * EACH);
+        let changing = (changes << 1).wrapping_sub(changes >> 7);
+        let sums = (stay & !changing | (CHANGE * EACH) & changing) + costs;
+        let keys = 4 * sums + u32::from_le_bytes([0, 1, 2, 3]);
+        let least = keys.to_le_bytes().into_iter().fold(u8::MAX, u8::min);
+        self.0 = sums - u32::from(least >> 2) * EACH;
+        // The product moves bit 7 of the byte of label `l` to bit 28 + l.
+        let stays = (((changes >> 7) ^ EACH).wrapping_mul(0x1020_4080) >> 28) as u8;
+        (stays, least & 3)
+    }
+}
 
 /// What is needed to label a column.
 #[derive(Clone, Copy, Debug)]
@@ -62,29 +88,32 @@ impl<'a> Labelling<'a> {
 
     /// Whether a surface stands above the headroom.
     fn is_overhead(&self, parallax: i32, expected: i32) -> bool {
-        let Some(ground) = self.ground.filter(|_| self.config.headroom_mm < u16::MAX) else { return false };
+        let Some(ground) = self.ground.as_ref() else { return false };
+        if self.config.headroom_mm == u16::MAX {
+            return false;
+        }
         i64::from(ground.height_mm) * i64::from(parallax - expected)
             > i64::from(self.config.headroom_mm) * i64::from(parallax)
     }
 
-    /// Costs of the four labels at a cell: 0 where the answer agrees, rising to 16 at three deviations beyond
-    /// the label's interval.
-    fn costs(&self, row: &Between, parallax: Option<i32>, per_step: i32, most: i32) -> [u32; 4] {
+    /// Costs of the four labels at a cell, a byte each: 0 where the answer agrees, rising to 16 at three
+    /// deviations beyond the label's interval.
+    fn costs(&self, row: &Between, parallax: Option<i32>, per_step: i32, most: i32) -> u32 {
+        const AT_MOST: u8 = MOST as u8;
         let Some(parallax) = parallax else { return UNANSWERED };
         let beyond = |by: i32| {
-            let by = by.max(0).min(most);
-            let rising = 1 + ((by * per_step) >> 16);
-            if by == 0 { 0 } else { rising.min(MOST) as u32 }
+            let rising = 1 + ((by.min(most) * per_step) >> 16);
+            if by <= 0 { 0 } else { rising.min(MOST) as u8 }
         };
         let overhead = self.is_overhead(parallax, row.expected);
-        let obstacle = if overhead { MOST as u32 } else { beyond((row.high + 1).saturating_sub(parallax)) };
+        let obstacle = if overhead { AT_MOST } else { beyond((row.high + 1).saturating_sub(parallax)) };
         if row.low == i32::MIN {
             let far = if overhead { 0 } else { beyond(parallax - row.high) };
-            return [obstacle, MOST as u32, MOST as u32, far];
+            return u32::from_le_bytes([obstacle, AT_MOST, AT_MOST, far]);
         }
         let drop = beyond(parallax - (row.low - 1));
         let ground = beyond((row.low - parallax).max(parallax - row.high));
-        [obstacle, drop, ground, if overhead { 0 } else { MOST as u32 }]
+        u32::from_le_bytes([obstacle, drop, ground, if overhead { 0 } else { AT_MOST }])
     }
 
     /// Labels a column, and returns its nearest obstacle or drop of a parallax below `bound`.
@@ -98,9 +127,10 @@ impl<'a> Labelling<'a> {
         let per_step = (MOST << 16) / most;
         let intervals = self.intervals.as_chunks().0;
         let beside = self.ground.map_or(0, |ground| ground.beside_256ths(self.cells.right_16ths(column)));
-        let mut sums = [0_u32; 4];
+        let mut sums = Sums(0);
         let mut below = None;
-        let (mut answered, mut from) = (0, OBSTACLE);
+        // The first of equals, as all are below the lowest row.
+        let (mut answered, mut from) = (0, OBSTACLE as u8);
         for row in (0..rows).rev() {
             let (Some(step), Some(bins)) = (labels.get_mut(row), intervals.get(row)) else { break };
             let parallax = self.cells.parallax(column, row);
@@ -110,19 +140,11 @@ impl<'a> Labelling<'a> {
             answered += usize::from(parallax.is_some());
             let row = Interval::load(bins).at(beside, self.cells.farthest);
             let costs = self.costs(&row, parallax, per_step, most);
-            let change = sums.get(from).map_or(0, |sum| sum + CHANGE);
-            *step = from as u8 | if breaks { BREAK } else { 0 };
-            for (label, (sum, cost)) in sums.iter_mut().zip(costs).enumerate() {
-                let stay = *sum + if breaks && label == OBSTACLE { CHANGE } else { 0 };
-                if stay <= change {
-                    *step |= 4 << label;
-                }
-                *sum = stay.min(change) + cost;
-            }
-            // The first of equals, as all are below the lowest row.
-            from = cheapest(&sums);
+            let (stays, cheapest) = sums.advance(if breaks { CHANGE << (8 * OBSTACLE) } else { 0 }, costs);
+            *step = from | stays << 2 | if breaks { BREAK } else { 0 };
+            from = cheapest;
         }
-        let segment = self.segments(column, bound, labels, from);
+        let segment = self.segments(column, bound, labels, from.into());
         let whole = self.whole(column, segment, labels);
         let found = if self.touches(column, &whole) { whole } else { segment };
         let seen = match self.ground {
@@ -260,15 +282,4 @@ impl<'a> Labelling<'a> {
         }
         seen
     }
-}
-
-/// Index of the first of the least sums.
-fn cheapest(sums: &[u32; 4]) -> usize {
-    let mut best = (u32::MAX, 0);
-    for (label, &sum) in sums.iter().enumerate() {
-        if sum < best.0 {
-            best = (sum, label);
-        }
-    }
-    best.1
 }

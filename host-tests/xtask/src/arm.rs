@@ -2,7 +2,9 @@
 //! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
 
 use crate::kernels;
+use crate::packages;
 use crate::parallel;
+use crate::setup;
 use crate::steps::{Outcome, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
@@ -47,23 +49,20 @@ const ARM32: Arm = Arm {
     skipped: &[],
 };
 
-/// Their targets.
-pub fn targets() -> Vec<&'static str> {
-    others().map(|arm| arm.target).collect()
-}
-
-/// Their linkers and emulators.
-pub fn programs() -> Vec<&'static str> {
-    others().flat_map(|arm| [arm.linker, arm.emulator]).collect()
-}
-
 /// Those that the tests do not run on anyway.
 fn others() -> impl Iterator<Item = Arm> {
     [ARM64, ARM32].into_iter().filter(|arm| !(cfg!(target_arch = "aarch64") && arm.target == ARM64.target))
 }
 
+/// Adds their targets, linkers and emulators.
+pub fn set_up() -> Outcome {
+    setup::targets(&others().map(|arm| arm.target).collect::<Vec<_>>())?;
+    packages::install(&others().flat_map(|arm| [arm.linker, arm.emulator]).collect::<Vec<_>>())
+}
+
 /// Builds the tests for all of them at once, then runs them side by side.
 pub fn run() -> Outcome {
+    set_up()?;
     let arms: Vec<_> = others().collect();
     run_command(&mut tests(&arms, &["--no-run"]))?;
     parallel::work(arms, |arm| arm.run()).map(drop)

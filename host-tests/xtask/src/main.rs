@@ -1,6 +1,6 @@
 //! `cargo xtask`: the chores of the repository.
 //!
-//! * `test` sets up what it needs and runs everything: the one test command.
+//! * `test` sets up what it needs and runs what every change passes, or all there is: the one test command.
 //! * `firmware` runs the firmware example in QEMU, on one core or on all.
 //! * `growth` measures how the cost grows with the work.
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
@@ -66,8 +66,12 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Chore {
-    /// Sets up what the tests need and runs all of them; STEREO_DATA names the folder of real stereo pairs.
+    /// Sets up what the tests need and runs those of every change; STEREO_DATA names the folder of real
+    /// stereo pairs.
     Test {
+        /// Runs what is checked before a release too: more processors, boards and compilers.
+        #[arg(long, conflicts_with = "step")]
+        all: bool,
         /// Runs only the steps with these words in their names, such as "clippy" or "firmware".
         #[arg(long, value_name = "WORDS")]
         step: Option<String>,
@@ -133,7 +137,7 @@ fn main() -> ExitCode {
         }
     };
     let done = match arguments.chore {
-        Chore::Test { step } => test::run(step),
+        Chore::Test { all, step } => test::run(step, all),
         Chore::Firmware(arguments) => firmware::run(&arguments),
         Chore::Growth(arguments) => growth::run(&arguments),
         Chore::Rtl(arguments) => rtl::run(&arguments),

@@ -54,10 +54,15 @@ pub const C: [&str; 9] = [
     "valgrind",
 ];
 
-/// Adds the targets, components and toolchain that are missing.
+/// Adds the targets and components that are missing.
 pub fn toolchains() -> Outcome {
-    targets(&[TARGETS.as_slice(), &CHECKED, &C_TARGETS].concat())?;
-    components()?;
+    targets(&[TARGETS.as_slice(), &C_TARGETS].concat())?;
+    components()
+}
+
+/// Adds what is missing of the targets that are only checked, and of the oldest toolchain.
+pub fn before_a_release() -> Outcome {
+    targets(&CHECKED)?;
     toolchain(&rust_version()?)
 }
 

@@ -21,62 +21,87 @@ use std::path::PathBuf;
 /// What is printed when they are not run, so that nobody takes them for passed.
 const NOT_RUN: &str = "real data: NOT RUN, set STEREO_DATA to the folder that holds stereo/";
 
-/// Runs all steps, or those with words in their names.
-pub fn run(only: Option<String>) -> Outcome {
+/// A step's name and what it does.
+type NamedStep = (&'static str, fn() -> Outcome);
+
+/// Steps that run one after another, beside other rows.
+type Row = &'static [NamedStep];
+
+// Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside each
+// other. Those that build in the same folder stand in the same row; what takes longest comes first.
+
+/// The tests build `stereo`, which the second half runs. The firmware, the C interface and the example share
+/// folders.
+const FIRST: &[Row] = &[
+    &[("tests", tests)],
+    &[
+        ("programs", programs),
+        ("C interface", c::run),
+        ("firmware", firmware::check_sample),
+        ("quickstart", || examples::QUICKSTART.run()),
+    ],
+];
+
+/// What needs `stereo`, or the folder that the tests were built in.
+const SECOND: &[Row] = &[
+    &[
+        ("clippy", clippy),
+        ("documentation", documentation),
+        ("README's commands", readme_commands),
+        ("match on a core", || firmware::check_as_match(&stereo())),
+    ],
+    &[("live page", || view::sample(&stereo())), ("book", || book::sample(&stereo()))],
+    &[("package", package::run), ("gates", rtl::sample)],
+];
+
+/// What is left to be checked before a release: more processors, boards and compilers.
+const BEFORE_A_RELEASE: &[Row] = &[
+    &[("boards", boards::run)],
+    &[
+        ("kernels on Arm", arm::run),
+        ("kernels on WebAssembly", view::kernels),
+        ("cross checks", cross::sample),
+        ("stated rust-version", rust_version),
+    ],
+    &[
+        ("stages and profiles on cores", firmware::check_stages_and_profiles),
+        ("growth", growth::sample),
+        ("async", examples::executors),
+        ("lints on targets", lints_on_targets),
+    ],
+];
+
+/// Runs the steps that every change passes, and with `all` those before a release; or those of either with
+/// words in their names.
+pub fn run(only: Option<String>, all: bool) -> Outcome {
     let data = real_data()?;
     if data.is_none() {
         println!("{NOT_RUN}");
     }
+    let is_whole = all || only.is_some();
     let mut steps = Steps::new(only);
     steps.step("set up", set_up)?;
     steps.step("format", format)?;
-    // Much of a step is one compiler, one linker or one emulator at a time, so two rows of steps run beside
-    // each other. Those that build in the same folder stand in the same row; what takes longest comes first.
-    side_by_side(
-        &mut steps,
-        &[
-            &[("tests", tests)],
-            &[
-                ("programs", programs),
-                ("kernels on Arm", arm::run),
-                ("kernels on WebAssembly", view::kernels),
-            ],
-        ],
-    )?;
-    // What needs those programs, or `stereo` as the tests have built it. The firmware's checksums, the C
-    // interface and the examples share a folder.
-    side_by_side(
-        &mut steps,
-        &[
-            &[
-                ("firmware", || firmware::check_sample(&stereo())),
-                ("growth", growth::sample),
-                ("C interface", c::run),
-                ("quickstart", || examples::QUICKSTART.run()),
-                ("async", examples::executors),
-            ],
-            &[("boards", boards::run)],
-            &[("README's commands", readme_commands)],
-            &[("clippy", clippy), ("documentation", documentation)],
-            &[("live page", || view::sample(&stereo())), ("book", || book::sample(&stereo()))],
-            &[("cross checks", cross::sample), ("package", package::run)],
-            &[("stated rust-version", rust_version)],
-            &[("gates", rtl::sample)],
-        ],
-    )?;
+    side_by_side(&mut steps, FIRST)?;
+    side_by_side(&mut steps, SECOND)?;
+    if is_whole {
+        steps.step("compilers before a release", set_up_before_a_release)?;
+        side_by_side(&mut steps, BEFORE_A_RELEASE)?;
+    }
     steps.summary()?;
+    if !is_whole {
+        let left: Vec<_> = BEFORE_A_RELEASE.iter().copied().flatten().map(|(name, _)| *name).collect();
+        println!("before a release: NOT RUN, give --all: {}", left.join(", "));
+    }
     if data.is_none() {
         println!("{NOT_RUN}");
     }
     Ok(())
 }
 
-/// A step's name and what it does.
-type NamedStep = (&'static str, fn() -> Outcome);
-
 /// Runs rows of steps, two beside each other, each step as a program of its own whose output is printed when
 /// it is done; or one after another those that were asked for.
-fn side_by_side(steps: &mut Steps, rows: &[&[NamedStep]]) -> Outcome {
+fn side_by_side(steps: &mut Steps, rows: &[Row]) -> Outcome {
     if steps.is_part() {
         return rows.iter().copied().flatten().try_for_each(|(name, work)| steps.step(name, work));
     }
@@ -112,12 +137,18 @@ fn real_data() -> Outcome<Option<PathBuf>> {
 /// Adds what compilers need.
 fn set_up() -> Outcome {
     setup::toolchains()?;
-    setup::targets(&[view::TARGETS.as_slice(), &arm::targets()].concat())
+    setup::targets(&view::TARGETS)
 }
 
-/// Adds the programs of all steps.
+/// Adds what the steps before a release need, so that no two of them add something at once.
+fn set_up_before_a_release() -> Outcome {
+    setup::before_a_release()?;
+    arm::set_up()
+}
+
+/// Adds the programs of all steps but those before a release.
 fn programs() -> Outcome {
-    packages::install(&[setup::C.as_slice(), &setup::GATES, &view::PROGRAMS, &arm::programs()].concat())
+    packages::install(&[setup::C.as_slice(), &setup::GATES, &view::PROGRAMS].concat())
 }
 
 fn format() -> Outcome {
@@ -132,8 +163,11 @@ fn clippy() -> Outcome {
     run_cargo(&format!(
         "clippy --locked --no-default-features --manifest-path {CAMPAIGN} --target-dir {} -- -D warnings",
         target_dir().display()
-    ))?;
-    // The kinds of cores have code of their own.
+    ))
+}
+
+/// The code that kinds of processors have of their own.
+fn lints_on_targets() -> Outcome {
     for (target, features) in [("thumbv7em-none-eabihf", "large"), ("riscv32imc-unknown-none-elf", "")] {
         let words =
             format!("clippy --locked --release --target {target} --features={features} -- -D warnings");
@@ -180,6 +214,7 @@ fn readme_commands() -> Outcome {
 
 /// The oldest compiler that the core says it builds with, in earnest.
 fn rust_version() -> Outcome {
+    setup::before_a_release()?;
     package::stated_rust_version(&["stereopsis"])
 }
 

@@ -69,17 +69,17 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
         .collect()
 }
 
-/// What `cargo xtask test` builds. Every method is on two cores, one that works in words and one that works
-/// in vectors, and a method over windows and one along paths there in the larger size and on all other cores:
-/// with a Cortex-M4, which runs the M7's code, `growth` and [`as_match`](super::as_match) have those two, so
-/// it has another one here. The smallest has room for windows.
+/// What `cargo xtask test` builds. Every method is on a core that works in words, the ones for windows and
+/// along paths there in the larger size too, and in vectors; each other core has one of them. A Cortex-M4 runs
+/// the M7's code, so it has another method. The smallest has room for windows.
 fn is_sampled(board: Board, method: MethodName, is_large: bool) -> bool {
     let is_one_of_a_kind = matches!(method, MethodName::Block | MethodName::Sgm);
     match board {
-        M7 | M55 => !is_large || is_one_of_a_kind,
+        M7 => !is_large || is_one_of_a_kind,
+        M55 => !is_large && is_one_of_a_kind,
         M4 => !is_large && method == MethodName::Fast,
         M0 => method == MethodName::Block,
-        _ => !is_large && is_one_of_a_kind,
+        _ => !is_large && method == MethodName::Sgm,
     }
 }
 

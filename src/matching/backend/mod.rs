@@ -60,6 +60,8 @@ pub(super) use work::{
 /// Words that the tables of a target take beside the workspace of a window whose codes have up to four bits,
 /// and four that rows are read beyond. A matcher's bytes are given for all targets alike.
 pub(super) const TABLE_WORDS: usize = 2 * 16 * 96 / size_of::<u32>() + 4;
+/// Words that the tables of a target take beside the workspace of a window whose codes have eight bits.
+pub(super) const TABLE_WORDS_OF_EIGHT: usize = 2 * 16 * 88 / size_of::<u32>();
 
 impl Kernel {
     /// The fastest kernel that this processor runs.

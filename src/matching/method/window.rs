@@ -5,7 +5,8 @@ use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
 use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::{
-    CODES_SHARE_A_BYTE, CensusWork, Isa, MethodParameters, TABLE_WORDS, WindowParameters, WindowWork,
+    CODES_SHARE_A_BYTE, CensusWork, Isa, MethodParameters, TABLE_WORDS, TABLE_WORDS_OF_EIGHT,
+    WindowParameters, WindowWork,
 };
 use crate::matching::memory::rings::{row as slot, row_mut};
 use crate::matching::memory::winners::{Select, Unique};
@@ -30,7 +31,7 @@ const fn table_words<S: WindowParameters>() -> usize {
 
 /// Words for the tables of any target: a matcher's bytes are given for all processors alike.
 const fn most_table_words<S: WindowParameters>() -> usize {
-    if S::BITS <= 4 { TABLE_WORDS } else { 0 }
+    if S::BITS <= 4 { TABLE_WORDS } else { TABLE_WORDS_OF_EIGHT }
 }
 
 /// What the arithmetic relies on.

@@ -24,7 +24,7 @@ const SIZE: (u16, u16, u16) = (160, 120, 32);
 const STAGES: [(&str, &[&str]); 9] = [
     ("denoise", &["denoise", "imaging::smooth"]),
     ("census, features", &["census", "features"]),
-    ("cost", &["columns", "by_bits", "tables", "reverse", "enter", "cost", "within_edges"]),
+    ("cost", &["columns", "tables", "reverse", "enter", "cost", "within_edges"]),
     (
         "aggregation, selection",
         &[

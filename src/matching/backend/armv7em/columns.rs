@@ -1,17 +1,18 @@
-//! The costs of a row that enters and of one that leaves, added to the columns under the window.
+//! The costs of a row that enters and of one that leaves, added to the columns under the window: both from
+//! tables, half a byte each, so that eight candidates are one addition, and two more where they come into the
+//! sums.
 //!
 //! ```text
-//! fast    column x, d   += cost of the entering codes, + 4 - cost of the leaving ones, both from tables:
-//!                       half a byte each, so that eight candidates are one addition, and two more where
-//!                       they come into the sums. So every row adds four too many, modulo 256, which windows
-//!                       take off again
-//! block   column x, d   += bits that differ in the entering codes, + bits equal in the leaving ones, - 8
+//! fast    column x, d   += bits that differ in the entering codes, + bits equal in the leaving ones: every
+//!                       row adds four too many, modulo 256, which windows take off again
+//! block   column x, d   likewise, of the low four bits; then of the high ones
+//!                       -= bits equal in the entering codes, + bits that differ in the leaving ones: four
+//!                       too many as well
 //! ```
 
-use super::tables::{self, LINE, Table};
+use super::tables::{self, make, make_equal};
 use super::word::{ONE, add};
 use super::{Rows, rows};
-use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{chunks_mut, part, part_mut};
@@ -19,133 +20,172 @@ use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
 const MOST: usize = 64;
+/// The high four bits of each byte.
+const HIGH: u32 = 0xf0f0_f0f0;
 
-/// Moves the sums of all columns from `begin` on one row down, by tables. `STRIDE` is the number of
-/// candidates where it is a usual one; else 0.
+/// Moves the sums of all columns from `begin` on one row down, where a pixel's two codes of four bits are a
+/// byte. `STRIDE` is the number of candidates where it is a usual one; else 0. Here and below tables have
+/// lines of so many bytes.
 #[inline(never)]
-pub(super) fn update_by_tables<const STRIDE: usize>(
+pub(super) fn update_fours<const STRIDE: usize, const LINE: usize>(
     row: &Rows<'_>,
     begin: usize,
     workspace: &mut [u32],
     columns: &mut [u32],
 ) {
-    let Some((tables, workspace)) =
-        workspace.split_at_mut_checked(size_of::<[Table; 2]>() / size_of::<u32>())
-    else {
+    let Some((tables, workspace)) = workspace.split_at_mut_checked(2 * tables::words::<LINE>()) else {
         return;
     };
-    let tables = tables.as_chunks_mut().0.as_chunks_mut().0.first_chunk_mut::<2>();
-    let (Some(tables), Some(any)) = (tables, row.enter.or(row.leave)) else { return };
+    if row.enter.or(row.leave).is_none() {
+        return;
+    }
     // The right codes alone.
-    let [new, old] =
-        reversed(row, [row.enter, row.leave].map(|codes| codes.unwrap_or(&[])), 0xf0f0_f0f0, workspace);
-    // Nothing differs in a row that is not there.
-    if row.enter.is_none() {
-        tables::fill(&mut tables[0], 0);
-    }
-    if row.leave.is_none() {
-        tables::fill(&mut tables[1], 4);
-    }
-    // Never none.
-    let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
-    let words = stride / 4;
+    let codes = [row.enter, row.leave];
+    let rights = reversed(row, codes.map(|codes| codes.unwrap_or(&[])), HIGH, workspace);
+    let rights = rights.map(|rights| view(rights));
     // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
+    let words = row.stride / 4;
     for outside in [begin, OUTSIDE + row.width] {
         let sums = part_mut(columns, outside * words..(outside + OUTSIDE) * words);
         // They are all the same, and whole steps of them.
         let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
         sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
     }
-    let mut chunk = 0;
-    while chunk < stride {
-        let half = MOST.min(stride - chunk) / 2;
-        let mut from = begin;
-        while from < row.width {
-            let piece = from..row.width.min(from + LINE - half);
-            let first = row.width - piece.end + chunk;
-            if row.enter.is_some() {
-                tables::make(&mut tables[0], part(new, first..), half, piece.len());
-            }
-            if row.leave.is_some() {
-                tables::make_equal(&mut tables[1], part(old, first..), half, piece.len());
-            }
-            let codes = [row.enter, row.leave].map(|codes| part(codes.unwrap_or(any), piece.clone()));
-            let columns = part_mut(columns, (OUTSIDE + from) * words..(OUTSIDE + piece.end) * words);
-            match STRIDE {
-                16 => rows::by_tables_16(tables, codes, columns.as_chunks_mut().0),
-                32 => rows::by_tables_32(tables, codes, columns.as_chunks_mut().0),
-                48 => rows::by_tables_48(tables, codes, columns.as_chunks_mut().0),
-                64 => rows::by_tables_64(tables, codes, columns.as_chunks_mut().0),
-                _ => add_costs(tables, codes, half, (words, chunk / 4), columns),
-            }
-            from = piece.end;
-        }
-        chunk += MOST;
-    }
+    Plane { row, begin, lefts: codes, rights }.sum::<STRIDE, LINE, false>(tables, columns);
 }
 
-/// Adds the costs of a piece of a row to so many words of its columns, from a word on.
-fn add_costs(
-    [new, old]: &[Table; 2],
-    [enters, leaves]: [&[u8]; 2],
-    half: usize,
-    (words, from): (usize, usize),
-    columns: &mut [u32],
-) {
-    let places = (0..enters.len()).rev();
-    for (((sums, place), enters), leaves) in chunks_mut(columns, words).zip(places).zip(enters).zip(leaves) {
-        let costs =
-            [(new, enters), (old, leaves)].map(|(table, code)| tables::costs(table, code & 15, place, half));
-        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
-            return;
-        };
-        let costs = costs[0].as_chunks::<4>().0.iter().zip(costs[1].as_chunks::<4>().0);
-        for ((near, far), (&new, &old)) in near.iter_mut().zip(far).zip(costs) {
-            let costs = u32::from_le_bytes(new) + u32::from_le_bytes(old);
-            *near = add(*near, costs & 0x0f0f_0f0f);
-            *far = add(*far, costs >> 4 & 0x0f0f_0f0f);
-        }
-    }
-}
-
-/// Moves the sums of all columns from `begin` on one row down, bit by bit. `STRIDE` is the number of
-/// candidates where that is known when the crate is compiled; 0 where it is not.
+/// [`update_fours`] where codes have eight bits, the left ones before the right ones.
 #[inline(never)]
-pub(super) fn update<S: WindowParameters, const STRIDE: usize>(
+pub(super) fn update_eights<const STRIDE: usize, const LINE: usize>(
     row: &Rows<'_>,
     begin: usize,
     workspace: &mut [u32],
     columns: &mut [u32],
 ) {
-    // Never none.
-    let stride = if STRIDE > 0 { STRIDE } else { row.stride.max(STEP) };
+    let Some((tables, workspace)) = workspace.split_at_mut_checked(2 * tables::words::<LINE>()) else {
+        return;
+    };
     let halves =
         [row.enter, row.leave].map(|codes| codes.and_then(|row| row.split_at_checked(row.len() / 2)));
-    let [new, old] =
-        reversed(row, halves.map(|row| row.map_or(&[][..], |(_, right)| right)), u32::MAX, workspace);
-    // The codes of a row that is not there are 0 on both sides.
-    let lefts = [halves[0].map_or(new, |(left, _)| left), halves[1].map_or(old, |(left, _)| left)];
-    let [enters, leaves] = lefts.map(|left| part(left, begin..));
-    let words = stride / 4;
-    let columns = part_mut(columns, (OUTSIDE + begin) * words..(OUTSIDE + row.width) * words);
-    match STRIDE {
-        16 => rows::by_bits_16([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        32 => rows::by_bits_32([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        48 => rows::by_bits_48([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        64 => rows::by_bits_64([enters, leaves], [new, old], columns.as_chunks_mut().0),
-        _ => rows::by_bits([enters, leaves], [new, old], stride, columns),
+    let lefts = halves.map(|row| row.map(|(left, _)| left));
+    let codes = halves.map(|row| row.map_or(&[][..], |(_, right)| right));
+    let rights = reversed(row, codes, !HIGH, workspace).map(|rights| {
+        rights.iter_mut().for_each(|codes| *codes <<= 4);
+        view(rights)
+    });
+    Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE, false>(tables, columns);
+    let rights = reversed(row, codes, HIGH, workspace).map(|rights| view(rights));
+    Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE, true>(tables, columns);
+}
+
+/// Four bits of each code, of the row that enters and of the one that leaves.
+struct Plane<'a> {
+    row: &'a Rows<'a>,
+    /// The first column.
+    begin: usize,
+    /// The left codes, where there is a row: the four bits are the low ones, or the high ones.
+    lefts: [Option<&'a [u8]>; 2],
+    /// The right codes, reversed: the high four bits of each byte, and nothing else in it.
+    rights: [&'a [u8]; 2],
+}
+
+impl Plane<'_> {
+    /// Adds the costs of the low bits of codes to the columns, or takes off what those of the high bits lack.
+    #[inline(always)]
+    fn sum<const STRIDE: usize, const LINE: usize, const HIGH: bool>(
+        &self,
+        tables: &mut [u32],
+        columns: &mut [u32],
+    ) {
+        let [enters, leaves] = self.lefts;
+        let Some(any) = enters.or(leaves) else { return };
+        let (of_new, of_old) = (..tables::words::<LINE>(), tables::words::<LINE>()..);
+        // Nothing differs in a row that is not there.
+        if enters.is_none() {
+            tables::fill(part_mut(tables, of_new), if HIGH { 4 } else { 0 });
+        }
+        if leaves.is_none() {
+            tables::fill(part_mut(tables, of_old.clone()), if HIGH { 0 } else { 4 });
+        }
+        let width = self.row.width;
+        // Never none.
+        let stride = if STRIDE > 0 { STRIDE } else { self.row.stride.max(STEP) };
+        let words = stride / 4;
+        let mut chunk = 0;
+        while chunk < stride {
+            let half = MOST.min(stride - chunk) / 2;
+            let mut from = self.begin;
+            while from < width {
+                let piece = from..width.min(from + LINE - half);
+                let first = width - piece.end + chunk;
+                let [new, old] = self.rights.map(|rights| part(rights, first..));
+                if enters.is_some() {
+                    let make = if HIGH { make_equal::<LINE> } else { make::<LINE> };
+                    make(part_mut(tables, of_new), new, half, piece.len());
+                }
+                if leaves.is_some() {
+                    let make = if HIGH { make::<LINE> } else { make_equal::<LINE> };
+                    make(part_mut(tables, of_old.clone()), old, half, piece.len());
+                }
+                let codes = self.lefts.map(|codes| part(codes.unwrap_or(any), piece.clone()));
+                let columns = part_mut(columns, (OUTSIDE + from) * words..(OUTSIDE + piece.end) * words);
+                match (STRIDE, HIGH) {
+                    (16, false) => rows::add_low_16::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (32, false) => rows::add_low_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (48, false) => rows::add_low_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (64, false) => rows::add_low_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (16, true) => rows::take_high_16::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (32, true) => rows::take_high_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (48, true) => rows::take_high_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (64, true) => rows::take_high_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    _ => sum_any::<LINE, HIGH>(tables, codes, half, (words, chunk / 4), columns),
+                }
+                from = piece.end;
+            }
+            chunk += MOST;
+        }
+    }
+}
+
+/// [`Plane::sum`] of a piece of a row, to so many words of its columns, from a word on.
+fn sum_any<const LINE: usize, const HIGH: bool>(
+    tables: &[u32],
+    [enters, leaves]: [&[u8]; 2],
+    half: usize,
+    (words, from): (usize, usize),
+    columns: &mut [u32],
+) {
+    let Some((new, old)) = tables.split_at_checked(tables::words::<LINE>()) else { return };
+    let places = (0..enters.len()).rev();
+    for (((sums, place), enters), leaves) in chunks_mut(columns, words).zip(places).zip(enters).zip(leaves) {
+        let costs = [(new, enters), (old, leaves)].map(|(table, code)| {
+            let code = if HIGH { code >> 4 } else { code & 15 };
+            tables::costs::<LINE>(table, code, place, half)
+        });
+        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
+            return;
+        };
+        let costs = costs[0].as_chunks::<4>().0.iter().zip(costs[1].as_chunks::<4>().0);
+        // What is taken off is no more than there is.
+        let sum = |sum: u32, costs: u32| if HIGH { sum.wrapping_sub(costs) } else { add(sum, costs) };
+        for ((near, far), (&new, &old)) in near.iter_mut().zip(far).zip(costs) {
+            let costs = u32::from_le_bytes(new) + u32::from_le_bytes(old);
+            *near = sum(*near, costs & 0x0f0f_0f0f);
+            *far = sum(*far, costs >> 4 & 0x0f0f_0f0f);
+        }
     }
 }
 
 /// The right codes of both rows from the partner of the last column's first candidate back, with those of all
 /// candidates of the first column; of each the bits of a mask.
-fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a [u8]; 2] {
+fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a mut [u32]; 2] {
     // Tables read up to seven bytes more, and pieces begin between words.
     let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
-    let Some((new, old)) = room.split_at_mut_checked(words) else { return [&[]; 2] };
+    let Some((new, old)) = room.split_at_mut_checked(words) else { return Default::default() };
     let last = row.width as i32 - 1 - row.min_disparity as i32;
-    for (right, out) in right.into_iter().zip([&mut *new, part_mut(old, ..words)]) {
+    let mut rows = [new, part_mut(old, ..words)];
+    for (right, out) in right.into_iter().zip(&mut rows) {
         rows::reverse(right, last, mask, out);
     }
-    [view::<u32, u8>(new), view::<u32, u8>(old)]
+    rows
 }

@@ -4,7 +4,7 @@
 //! In running order:
 //!
 //! * `census`: the codes of a row.
-//! * `tables`: what every left code costs against a row's right codes, where codes have four bits.
+//! * `tables`: what every left code of four bits costs against a row's right codes.
 //! * `columns`: costs into the columns under the window.
 //! * `windows`: columns into windows, windows into winners.
 //! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
@@ -38,13 +38,13 @@ mod vertical;
 mod windows;
 mod word;
 
-use super::TABLE_WORDS;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
     SpeckleWork, WindowWork,
 };
+use super::{TABLE_WORDS, TABLE_WORDS_OF_EIGHT};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{multiple_of, part, split_mut};
@@ -157,7 +157,11 @@ pub(super) fn candidates(disparities: usize, most: usize) -> usize {
     multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
 }
 
-const _: () = assert!(TABLE_WORDS == size_of::<[tables::Table; 2]>() / size_of::<u32>() + 4);
+/// Bytes of a code's line in the tables of codes of four bits, and of eight.
+const LINE: usize = 96;
+const LINE_OF_EIGHT: usize = 88;
+const _: () = assert!(TABLE_WORDS == 2 * tables::words::<LINE>() + 4);
+const _: () = assert!(TABLE_WORDS_OF_EIGHT == 2 * tables::words::<LINE_OF_EIGHT>());
 
 /// A row's columns and what enters and leaves them.
 struct Rows<'a> {
@@ -204,9 +208,9 @@ fn row_of<S: WindowParameters, const STRIDE: usize>(work: WindowWork<'_>, select
     // The first column that a window with a candidate has.
     let begin = min_disparity.min(width).saturating_sub(S::RADIUS_X);
     if S::BITS > 4 {
-        columns::update::<S, STRIDE>(&rows, begin, workspace, columns);
+        columns::update_eights::<STRIDE, LINE_OF_EIGHT>(&rows, begin, workspace, columns);
     } else {
-        columns::update_by_tables::<STRIDE>(&rows, begin, workspace, columns);
+        columns::update_fours::<STRIDE, LINE>(&rows, begin, workspace, columns);
     }
     if let Some(select) = select {
         windows::select::<S, STRIDE>(&rows, workspace, columns, select);

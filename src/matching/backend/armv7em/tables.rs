@@ -3,7 +3,7 @@
 //! A code of four bits is one of sixteen: so few that the costs of all of them are made once a row, in order
 //! of the right pixels. The candidates of a left pixel are then a piece of its code's line. From code to
 //! code, in an order in which one bit changes at a time (Gray's), every cost changes by one: an addition for
-//! eight of them.
+//! eight of them. A code of eight bits is two of four.
 //!
 //! ```text
 //! place p   of the reversed row: right pixel p in the low half of a byte, p + apart in the high one
@@ -15,20 +15,20 @@ use crate::matching::memory::slices::part;
 use crate::matching::memory::views::view;
 use core::arch::asm;
 
-/// Bytes of a code's line.
-pub(super) const LINE: usize = 96;
 /// Codes of four bits.
-const CODES: usize = 16;
+pub(super) const CODES: usize = 16;
 
 /// A one in every half of a byte.
 const ONE: u32 = 0x1111_1111;
 
-/// The lines of all codes, half a byte a cost.
-pub(super) type Table = [[u32; LINE / 4]; CODES];
+/// Words of a table: the lines of all codes, `LINE` bytes each, half a byte a cost.
+pub(super) const fn words<const LINE: usize>() -> usize {
+    CODES * LINE / size_of::<u32>()
+}
 
 /// Makes all costs the same one.
-pub(super) fn fill(table: &mut Table, cost: u32) {
-    table.as_flattened_mut().fill(cost * ONE);
+pub(super) fn fill(table: &mut [u32], cost: u32) {
+    table.fill(cost * ONE);
 }
 
 /// The next code in Gray's order, which has one bit more or one less: 2 instructions and a store.
@@ -54,9 +54,12 @@ macro_rules! make {
     ($(#[$doc:meta])* $name:ident, $differ:literal) => {
         $(#[$doc])*
         #[inline(never)]
-        pub(super) fn $name(table: &mut Table, row: &[u8], apart: usize, pixels: usize) {
+        pub(super) fn $name<const LINE: usize>(table: &mut [u32], row: &[u8], apart: usize, pixels: usize) {
             let rounds = (pixels + apart).div_ceil(8);
             if rounds == 0 || 8 * rounds > LINE || row.len() < apart + 8 * rounds {
+                return;
+            }
+            if table.len() < words::<LINE>() {
                 return;
             }
             // SAFETY: in each of the rounds eight bytes of the row are read from its beginning on and eight
@@ -147,7 +150,7 @@ make!(
 
 /// The costs of a code from a place on.
 #[inline(always)]
-pub(super) fn costs(table: &Table, code: u8, place: usize, count: usize) -> &[u8] {
-    let line = table.get(usize::from(code)).map_or(&[][..], |line| view::<u32, u8>(line));
-    part(line, place..place + count)
+pub(super) fn costs<const LINE: usize>(table: &[u32], code: u8, place: usize, count: usize) -> &[u8] {
+    let first = usize::from(code) * LINE + place;
+    part(view::<u32, u8>(table), first..first + count)
 }

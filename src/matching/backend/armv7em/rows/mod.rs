@@ -3,7 +3,7 @@
 //! which are there for all other numbers.
 //!
 //! * `reverse`: the right codes from right to left.
-//! * `tables`, `bits`: costs into columns.
+//! * `tables`: costs into columns.
 //! * `begin`: the sums of the first windows; `windows`: columns into windows and winners, by macros for a
 //!   `pixel`.
 #![allow(unsafe_code)]
@@ -20,18 +20,18 @@ macro_rules! if_twice {
 
 mod any;
 mod begin;
-mod bits;
 #[macro_use]
 mod pixel;
 mod reverse;
 mod tables;
 mod windows;
 
-pub(super) use any::{by_bits, slide};
+pub(super) use any::slide;
 pub(super) use begin::{begin_block, begin_fast};
-pub(super) use bits::{by_bits_16, by_bits_32, by_bits_48, by_bits_64};
 pub(super) use reverse::reverse;
-pub(super) use tables::{by_tables_16, by_tables_32, by_tables_48, by_tables_64};
+pub(super) use tables::{
+    add_low_16, add_low_32, add_low_48, add_low_64, take_high_16, take_high_32, take_high_48, take_high_64,
+};
 pub(super) use windows::{
     ACROSS, block_16, block_32, block_48, block_64, block_few_of_16, block_few_of_32, block_few_of_48,
     block_few_of_64, block_fewest_of_32, block_fewest_of_48, block_fewest_of_64, fast_16, fast_32, fast_48,

@@ -1,20 +1,37 @@
-//! Costs from tables into columns, where codes have four bits.
+//! Costs from tables into columns: of the low four bits of codes they are added, of the high ones taken off.
 
-use super::super::tables::{LINE, Table};
+use super::super::tables::{CODES, words};
 use core::arch::asm;
 
-/// The bytes from one table to the next.
-const OLD: usize = size_of::<Table>();
+/// Four of a code's bits.
+macro_rules! of_code {
+    (low, $code:literal) => {
+        concat!("and ", $code, ", ", $code, ", #15\n")
+    };
+    (high, $code:literal) => {
+        concat!("lsr ", $code, ", ", $code, ", #4\n")
+    };
+}
+
+/// Adds four costs, or takes them off.
+macro_rules! sum {
+    (low) => {
+        "uadd8 "
+    };
+    (high) => {
+        "usub8 "
+    };
+}
 
 /// Where the costs of a pixel's codes are, the entering one's and the leaving one's, in `r4` and `r8`: 7
 /// instructions.
 macro_rules! lines_of_codes {
-    () => {
+    ($bits:ident) => {
         concat!(
             "ldrb r4, [r12], #1\n",
             "ldrb r8, [lr], #1\n",
-            "and r4, r4, #15\n",
-            "and r8, r8, #15\n",
+            of_code!($bits, "r4"),
+            of_code!($bits, "r8"),
             "mov r5, #{line}\n",
             "mla r4, r4, r5, r11\n",
             "mla r8, r8, r5, r11\n",
@@ -49,24 +66,24 @@ macro_rules! costs {
 
 /// The low halves of a word's bytes added, or the high ones: 2 instructions.
 macro_rules! add {
-    (near, $costs:literal, $sums:literal) => {
-        concat!("and r8, ", $costs, ", #0x0f0f0f0f\nuadd8 ", $sums, ", ", $sums, ", r8\n")
+    ($bits:ident, near, $costs:literal, $sums:literal) => {
+        concat!("and r8, ", $costs, ", #0x0f0f0f0f\n", sum!($bits), $sums, ", ", $sums, ", r8\n")
     };
-    (far, $costs:literal, $sums:literal) => {
-        concat!("and r8, r10, ", $costs, ", lsr #4\nuadd8 ", $sums, ", ", $sums, ", r8\n")
+    ($bits:ident, far, $costs:literal, $sums:literal) => {
+        concat!("and r8, r10, ", $costs, ", lsr #4\n", sum!($bits), $sums, ", ", $sums, ", r8\n")
     };
 }
 
 /// Four words of sums; `$from` and `$to` say where: 10 instructions.
 macro_rules! add_four {
-    ($which:ident, $from:literal, $to:literal) => {
+    ($bits:ident, $which:ident, $from:literal, $to:literal) => {
         concat!(
             $from,
             ", {{r4-r7}}\n",
-            add!($which, "r0", "r4"),
-            add!($which, "r1", "r5"),
-            add!($which, "r2", "r6"),
-            add!($which, "r3", "r7"),
+            add!($bits, $which, "r0", "r4"),
+            add!($bits, $which, "r1", "r5"),
+            add!($bits, $which, "r2", "r6"),
+            add!($bits, $which, "r3", "r7"),
             $to,
             ", {{r4-r7}}\n",
         )
@@ -75,13 +92,13 @@ macro_rules! add_four {
 
 /// Two words of sums: 6 instructions.
 macro_rules! add_two {
-    ($which:ident, $at:literal) => {
+    ($bits:ident, $which:ident, $at:literal) => {
         concat!(
             "ldrd r4, r5, [r9, #",
             $at,
             "]\n",
-            add!($which, "r0", "r4"),
-            add!($which, "r1", "r5"),
+            add!($bits, $which, "r0", "r4"),
+            add!($bits, $which, "r1", "r5"),
             "strd r4, r5, [r9, #",
             $at,
             "]\n",
@@ -91,71 +108,71 @@ macro_rules! add_two {
 
 /// A pixel's column, by costs as many bytes from where `r11` says.
 macro_rules! column {
-    (16, $d:literal) => {
+    (16, $bits:ident, $d:literal) => {
         concat!(
-            lines_of_codes!(),
+            lines_of_codes!($bits),
             costs!(2, $d),
             "ldmia r9, {{r4-r7}}\n",
-            add!(near, "r0", "r4"),
-            add!(near, "r1", "r5"),
-            add!(far, "r0", "r6"),
-            add!(far, "r1", "r7"),
+            add!($bits, near, "r0", "r4"),
+            add!($bits, near, "r1", "r5"),
+            add!($bits, far, "r0", "r6"),
+            add!($bits, far, "r1", "r7"),
             "stmia r9!, {{r4-r7}}\n",
         )
     };
-    (32, $d:literal) => {
+    (32, $bits:ident, $d:literal) => {
         concat!(
-            lines_of_codes!(),
+            lines_of_codes!($bits),
             costs!(4, $d),
-            add_four!(near, "ldmia r9", "stmia r9!"),
-            add_four!(far, "ldmia r9", "stmia r9!"),
+            add_four!($bits, near, "ldmia r9", "stmia r9!"),
+            add_four!($bits, far, "ldmia r9", "stmia r9!"),
         )
     };
-    (48, $d:literal) => {
+    (48, $bits:ident, $d:literal) => {
         concat!(
-            lines_of_codes!(),
+            lines_of_codes!($bits),
             "strd r4, r8, [sp, #8]\n",
             costs!(4, $d),
-            add_four!(near, "ldmia r9", "stmia r9"),
+            add_four!($bits, near, "ldmia r9", "stmia r9"),
             "add r9, r9, #24\n",
-            add_four!(far, "ldmia r9", "stmia r9"),
+            add_four!($bits, far, "ldmia r9", "stmia r9"),
             "ldrd r4, r8, [sp, #8]\n",
             costs!(2, "16 + ", $d),
-            add_two!(near, "-8"),
-            add_two!(far, "16"),
+            add_two!($bits, near, "-8"),
+            add_two!($bits, far, "16"),
             "add r9, r9, #24\n",
         )
     };
-    (64, $d:literal) => {
+    (64, $bits:ident, $d:literal) => {
         concat!(
-            lines_of_codes!(),
+            lines_of_codes!($bits),
             "strd r4, r8, [sp, #8]\n",
             costs!(4, $d),
-            add_four!(near, "ldmia r9", "stmia r9"),
+            add_four!($bits, near, "ldmia r9", "stmia r9"),
             "add r9, r9, #32\n",
-            add_four!(far, "ldmia r9", "stmia r9"),
+            add_four!($bits, far, "ldmia r9", "stmia r9"),
             "ldrd r4, r8, [sp, #8]\n",
             costs!(4, "16 + ", $d),
-            add_four!(near, "ldmdb r9", "stmdb r9"),
+            add_four!($bits, near, "ldmdb r9", "stmdb r9"),
             "add r9, r9, #16\n",
-            add_four!(far, "ldmia r9", "stmia r9!"),
+            add_four!($bits, far, "ldmia r9", "stmia r9!"),
         )
     };
 }
 
 macro_rules! by_tables {
-    ($name:ident, $stride:tt, $rounds:tt) => {
-        /// Adds the costs of a piece of a row to its columns, by the tables of the row that enters and of the
-        /// one that leaves. 9 instructions a pixel, two more where a round has one, and 32 for each 32 of its
-        /// candidates.
+    ($name:ident, $bits:ident, $stride:tt, $rounds:tt) => {
+        /// Adds the costs of a piece of a row to its columns, or takes them off, by the tables of the row
+        /// that enters and of the one that leaves. 9 instructions a pixel, two more where a round has one,
+        /// and 32 for each 32 of its candidates.
         #[inline(never)]
-        pub(in super::super) fn $name(
-            tables: &[Table; 2],
+        pub(in super::super) fn $name<const LINE: usize>(
+            tables: &[u32],
             [enters, leaves]: [&[u8]; 2],
             columns: &mut [[u32; $stride / 4]],
         ) {
             let count = columns.len().min(enters.len()).min(leaves.len());
-            if count == 0 || count + $stride / 2 > LINE {
+            if count == 0 || count + $stride / 2 > LINE || tables.len() < 2 * words::<LINE>() {
                 return;
             }
             // The first pixel has the last place. The last one of a round reads one byte before that.
@@ -164,7 +181,7 @@ macro_rules! by_tables {
             let sums = columns.as_mut_ptr();
             // SAFETY: the loop reads a code of each of `count` pixels from either row and changes as many
             // columns, which there are: one in a round; or two, but for one in the first if `count` is odd.
-            // From the tables it reads, for codes below 16, half as many bytes as there are candidates of the
+            // From the tables it reads, for four bits, half as many bytes as there are candidates of the
             // code's line from the pixel's place on, the last of which is
             // `count - 1`: inside of the line. The stack and the two registers that no operand may be are
             // left as they were.
@@ -175,16 +192,16 @@ macro_rules! by_tables {
                     "str r1, [sp]",
                     if_twice!($rounds, "tst r0, #1\nbne 3f\n"),
                     "2:",
-                    if_twice!($rounds, column!($stride, "0")),
+                    if_twice!($rounds, column!($stride, $bits, "0")),
                     "3:",
-                    column!($stride, "-1"),
+                    column!($stride, $bits, "-1"),
                     "ldr r0, [sp]",
                     "sub r11, r11, #{rounds}",
                     "cmp r9, r0",
                     "bne 2b",
                     "add sp, sp, #16",
                     "pop {{r6, r7}}",
-                    table = const OLD, line = const LINE, rounds = const $rounds,
+                    table = const CODES * LINE, line = const LINE, rounds = const $rounds,
                     inout("r0") count => _, inout("r1") sums.add(count) => _,
                     out("r2") _, out("r3") _, out("r4") _, out("r5") _, out("r8") _,
                     inout("r9") sums => _,
@@ -198,7 +215,11 @@ macro_rules! by_tables {
     };
 }
 
-by_tables!(by_tables_16, 16, 2);
-by_tables!(by_tables_32, 32, 2);
-by_tables!(by_tables_48, 48, 1);
-by_tables!(by_tables_64, 64, 1);
+by_tables!(add_low_16, low, 16, 2);
+by_tables!(add_low_32, low, 32, 2);
+by_tables!(add_low_48, low, 48, 1);
+by_tables!(add_low_64, low, 64, 1);
+by_tables!(take_high_16, high, 16, 2);
+by_tables!(take_high_32, high, 32, 2);
+by_tables!(take_high_48, high, 48, 1);
+by_tables!(take_high_64, high, 64, 1);

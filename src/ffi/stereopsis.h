@@ -40,7 +40,7 @@
  * `width` at least as large, as the library was built with.
  */
 #define STEREOPSIS_BLOCK_BYTES(width, disparities) \
-  ((size_t)416 + (size_t)72 * (width) + (size_t)13 * (disparities) + \
+  ((size_t)3232 + (size_t)72 * (width) + (size_t)13 * (disparities) + \
    (size_t)1 * (width) * (disparities))
 
 /**

@@ -35,8 +35,8 @@ struct Sums(u32);
 impl Sums {
     /// Adds a row to each label's sum, or to that of a change from the cheapest label if that is less.
     ///
-    /// `to_stay` is what staying costs beside that, `costs` what the row does. Returns the labels that stay, a
-    /// bit each, and the label whose sum is now the first of the least.
+    /// `to_stay` is what staying costs beside that, `costs` what the row does. Returns the labels that stay,
+    /// a bit each, and the label whose sum is now the first of the least.
     fn advance(&mut self, to_stay: u32, costs: u32) -> (u8, u8) {
         let stay = self.0 + to_stay;
         // No carry from byte to byte: a sum is below 64. Its highest bit says that a change costs less.

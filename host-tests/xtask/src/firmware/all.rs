@@ -70,8 +70,8 @@ fn programs(readme: tables::Readme) -> Outcome<Vec<Program>> {
 }
 
 /// What `cargo xtask test` builds. Every method is on a core that works in words, the ones for windows and
-/// along paths there in the larger size too, and in vectors; each other core has one of them. A Cortex-M4 runs
-/// the M7's code, so it has another method. The smallest has room for windows.
+/// along paths there in the larger size too, and those on one that works in vectors; each other core has one.
+/// A Cortex-M4 runs the M7's code, so it has another method. The smallest has room for windows.
 fn is_sampled(board: Board, method: MethodName, is_large: bool) -> bool {
     let is_one_of_a_kind = matches!(method, MethodName::Block | MethodName::Sgm);
     match board {

@@ -15,7 +15,7 @@ use super::word::{ONE, add};
 use super::{Rows, rows};
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
@@ -138,40 +138,23 @@ impl Plane<'_> {
                     (32, true) => rows::take_high_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     (48, true) => rows::take_high_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     (64, true) => rows::take_high_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    _ => sum_any::<LINE, HIGH>(tables, codes, half, (words, chunk / 4), columns),
+                    _ => {
+                        let sum = match (half, HIGH) {
+                            (8, false) => rows::add_low_16_of::<LINE>,
+                            (16, false) => rows::add_low_32_of::<LINE>,
+                            (24, false) => rows::add_low_48_of::<LINE>,
+                            (_, false) => rows::add_low_64_of::<LINE>,
+                            (8, true) => rows::take_high_16_of::<LINE>,
+                            (16, true) => rows::take_high_32_of::<LINE>,
+                            (24, true) => rows::take_high_48_of::<LINE>,
+                            (_, true) => rows::take_high_64_of::<LINE>,
+                        };
+                        sum(tables, codes, (words, chunk / 4), columns);
+                    }
                 }
                 from = piece.end;
             }
             chunk += MOST;
-        }
-    }
-}
-
-/// [`Plane::sum`] of a piece of a row, to so many words of its columns, from a word on.
-fn sum_any<const LINE: usize, const HIGH: bool>(
-    tables: &[u32],
-    [enters, leaves]: [&[u8]; 2],
-    half: usize,
-    (words, from): (usize, usize),
-    columns: &mut [u32],
-) {
-    let Some((new, old)) = tables.split_at_checked(tables::words::<LINE>()) else { return };
-    let places = (0..enters.len()).rev();
-    for (((sums, place), enters), leaves) in chunks_mut(columns, words).zip(places).zip(enters).zip(leaves) {
-        let costs = [(new, enters), (old, leaves)].map(|(table, code)| {
-            let code = if HIGH { code >> 4 } else { code & 15 };
-            tables::costs::<LINE>(table, code, place, half)
-        });
-        let Some((near, far)) = sums.get_mut(from..).and_then(|s| s.split_at_mut_checked(half / 4)) else {
-            return;
-        };
-        let costs = costs[0].as_chunks::<4>().0.iter().zip(costs[1].as_chunks::<4>().0);
-        // What is taken off is no more than there is.
-        let sum = |sum: u32, costs: u32| if HIGH { sum.wrapping_sub(costs) } else { add(sum, costs) };
-        for ((near, far), (&new, &old)) in near.iter_mut().zip(far).zip(costs) {
-            let costs = u32::from_le_bytes(new) + u32::from_le_bytes(old);
-            *near = sum(*near, costs & 0x0f0f_0f0f);
-            *far = sum(*far, costs >> 4 & 0x0f0f_0f0f);
         }
     }
 }

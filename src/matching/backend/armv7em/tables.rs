@@ -11,8 +11,6 @@
 
 #![allow(unsafe_code)]
 
-use crate::matching::memory::slices::part;
-use crate::matching::memory::views::view;
 use core::arch::asm;
 
 /// Codes of four bits.
@@ -147,10 +145,3 @@ make!(
     /// Tables of what the costs leave of four: how many bits are equal.
     make_equal, "bic"
 );
-
-/// The costs of a code from a place on.
-#[inline(always)]
-pub(super) fn costs<const LINE: usize>(table: &[u32], code: u8, place: usize, count: usize) -> &[u8] {
-    let first = usize::from(code) * LINE + place;
-    part(view::<u32, u8>(table), first..first + count)
-}

@@ -30,7 +30,9 @@ pub(super) use any::slide;
 pub(super) use begin::{begin_block, begin_fast};
 pub(super) use reverse::reverse;
 pub(super) use tables::{
-    add_low_16, add_low_32, add_low_48, add_low_64, take_high_16, take_high_32, take_high_48, take_high_64,
+    add_low_16, add_low_16_of, add_low_32, add_low_32_of, add_low_48, add_low_48_of, add_low_64,
+    add_low_64_of, take_high_16, take_high_16_of, take_high_32, take_high_32_of, take_high_48,
+    take_high_48_of, take_high_64, take_high_64_of,
 };
 pub(super) use windows::{
     ACROSS, block_16, block_32, block_48, block_64, block_few_of_16, block_few_of_32, block_few_of_48,

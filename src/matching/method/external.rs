@@ -21,7 +21,7 @@ use core::marker::PhantomData;
 ///
 /// ```
 /// use stereopsis::matching::{Block, External, state_bytes};
-/// assert_eq!(state_bytes::<Block>(320, 64), 41_216);
+/// assert_eq!(state_bytes::<Block>(320, 64), 44_032);
 /// assert_eq!(state_bytes::<External<Block>>(320, 64), 16_256);
 /// ```
 #[derive(Clone, Copy, Debug)]

@@ -102,7 +102,8 @@ impl<'a> Labelling<'a> {
         const AT_MOST: u8 = MOST as u8;
         let Some(parallax) = parallax else { return UNANSWERED };
         let beyond = |by: i32| {
-            let rising = 1 + ((by.min(most) * per_step) >> 16);
+            // What is below zero is not used, and may wrap.
+            let rising = 1 + (by.min(most).wrapping_mul(per_step) >> 16);
             if by <= 0 { 0 } else { rising.min(MOST) as u8 }
         };
         let overhead = self.is_overhead(parallax, row.expected);

@@ -118,8 +118,8 @@ impl Template {
             yy += y * y;
         }
         let determinant = xx * yy - xy * xy;
-        // Along an edge it could be anywhere.
-        if !(determinant > 1e-3 * (xx + yy) * (xx + yy)) {
+        // Along an edge it could be anywhere. The slopes see a pixel more to each side: what is inside may be even.
+        if !(own > 0.0 && determinant > 1e-3 * (xx + yy) * (xx + yy)) {
             return Err(TemplateError::Untextured);
         }
         let [mut x, mut y] = start;

@@ -48,6 +48,14 @@ fn what_holds_nothing_is_not_found() {
     let edge = GrayImage::from_fn(80, 60, |x, _| image::Luma([if x < 40 { 20 } else { 200 }]));
     let template = Template::cut(&view(&edge), 40.0, 30.0).expect("inside");
     assert_eq!(template.align(&view(&edge), &upright, [40.0, 30.0], 4.0), Err(TemplateError::Untextured));
+    // Pixels that are all the same, with corners in the margin of one, which slopes alone see.
+    let framed = GrayImage::from_fn(80, 60, |x, y| {
+        let inside = x.abs_diff(40) < 6 && y.abs_diff(30) < 6;
+        image::Luma([if inside { 90 } else { (x * 7 + y * 13) as u8 }])
+    });
+    let template = Template::cut(&view(&framed), 40.0, 30.0).expect("inside");
+    let rich = GrayImage::from_fn(80, 60, |x, y| image::Luma([(x * x + 3 * y * y) as u8]));
+    assert_eq!(template.align(&view(&rich), &upright, [40.0, 30.0], 4.0), Err(TemplateError::Untextured));
     assert!(Template::cut(&view(&edge), 5.4, 30.0).is_err());
     assert!(Template::cut(&view(&edge), 5.6, 30.0).is_ok());
     assert!(Template::cut(&view(&edge), 40.0, 53.6).is_err());

@@ -1,12 +1,12 @@
 //! The core beside its naive twin, to the bit: cells, ground over frames, stixels, sectors and their scan, of
 //! frames that come whole or in parts.
 
-use super::support::{Finder, Map, floor};
+use super::support::{Map, floor};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::obstacles::{
-    GroundSource, ObstacleConfig, ObstaclesView, Sector as CoreSector, SectorState, StixelKind,
+    Ground, GroundSource, ObstacleConfig, ObstaclesView, Sector as CoreSector, SectorState, StixelKind,
 };
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::Random;
@@ -85,6 +85,7 @@ pub fn scene<'a>(map: &'a Map, config: ObstacleConfig, came: &'a [bool]) -> Scen
         confidences: &map.confidences,
         came,
         cameras: None,
+        given: None,
     }
 }
 
@@ -112,6 +113,45 @@ pub fn in_words(core: CoreSector) -> Sector {
     }
 }
 
+/// A plane of the core in the words of the twin.
+fn in_whole_numbers(ground: Ground) -> Line {
+    Line {
+        level: ground.level.into(),
+        slope: ground.slope.into(),
+        lean: ground.lean.into(),
+        variance: ground.variance.into(),
+        height_mm: ground.height_mm.into(),
+        pitch_sigma: ground.pitch_sigma.into(),
+    }
+}
+
+/// Compares the plane of a given pose at the corners of the picture with the equation, in `f64`.
+///
+/// The core takes the tangents of pitch and roll to 0.00005, the numbers to `f32`, of which it multiplies up to
+/// eight, and rounds slope and lean.
+fn compare_pose(scene: &Scene<'_>) -> Result<(), TestCaseError> {
+    let GroundSource::Given { pitch_mrad, roll_mrad, height_mm } = scene.config.ground else { return Ok(()) };
+    let [pitch, roll] = [pitch_mrad, roll_mrad].map(|mrad| f64::from(mrad) / 1000.0);
+    let [level, slope, lean] = Line::of_pose(scene, pitch, roll, height_mm.into());
+    let Some(line) = &scene.given else {
+        prop_assert!(slope < 1.0 || slope >= f64::from(1 << 29) || height_mm > 60_000);
+        return Ok(());
+    };
+    let focal = scene.focal_16ths as f64 / 16.0;
+    let centre = scene.cx_16ths as f64 / 16.0;
+    for (u, v) in [(0, 0), (scene.width, 0), (0, scene.height), (scene.width, scene.height)] {
+        let (right, v) = (u as f64 - centre, v as f64);
+        let expected = level + slope * v + lean * right;
+        let found = line.level as f64 + line.slope as f64 * v + line.lean as f64 * right;
+        let reach = slope.abs() * (focal + v + scene.cy_halves as f64) + lean.abs() * right.abs();
+        let of_tangents = 5e-5 * slope.hypot(lean) * (focal + v + right.abs());
+        let tolerance = 1.1 * of_tangents + 8.0 * f64::from(f32::EPSILON) * reach + v + right.abs() + 1.0;
+        prop_assert!((found - expected).abs() <= tolerance, "{} {} {}", found, expected, tolerance);
+    }
+    prop_assert_eq!((line.variance, line.height_mm, line.pitch_sigma), (1, height_mm.into(), 0));
+    Ok(())
+}
+
 /// Compares the sectors and the ranges of a scan, but of a rig with a tie.
 fn compare_sectors(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -> Result<(), TestCaseError> {
     if has_tie(scene) {
@@ -134,24 +174,16 @@ fn compare_sectors(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -
 }
 
 /// Compares all that core and twin say of a frame; returns how many stixels there are.
-fn compare(scene: &Scene<'_>, map: &Map, finder: &mut Finder, found: &Found) -> Result<usize, TestCaseError> {
-    map.rows(finder, |y| scene.came[y]);
-    prop_assert_eq!(finder.finish().err(), found.blind);
-    let (view, config) = (finder.as_mut_view(), &scene.config);
+fn compare(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -> Result<usize, TestCaseError> {
+    let config = &scene.config;
+    prop_assert_eq!(view.blind(), found.blind);
     let columns = view.columns();
     prop_assert_eq!(columns, found.columns.len());
     for (place, cell) in found.cells.iter().enumerate() {
         let core = view.cell(place % columns, place / columns);
         prop_assert_eq!(core.is_some().then(|| i128::from(core.raw())), *cell, "cell {}", place);
     }
-    let line = view.plane().map(|g| Line {
-        level: g.level.into(),
-        slope: g.slope.into(),
-        lean: g.lean.into(),
-        variance: g.variance.into(),
-        height_mm: g.height_mm.into(),
-        pitch_sigma: g.pitch_sigma.into(),
-    });
+    let line = view.plane().map(in_whole_numbers);
     prop_assert_eq!(line, found.ground);
     let cell = usize::from(config.cell_height);
     for (x, standing) in found.columns.iter().enumerate() {
@@ -177,8 +209,26 @@ fn compare(scene: &Scene<'_>, map: &Map, finder: &mut Finder, found: &Found) -> 
             x
         );
     }
-    compare_sectors(scene, &view, found)?;
+    compare_sectors(scene, view, found)?;
     Ok(found.columns.iter().filter(|standing| standing.found.is_some()).count())
+}
+
+/// Where a ground comes from.
+#[derive(Clone, Copy, PartialEq, Debug)]
+enum Source {
+    Absent,
+    Given,
+    Searched,
+}
+
+/// A pose from which a floor is seen, or any that is allowed.
+fn pose(random: &mut Random) -> (i16, i16, u16) {
+    let mut between = |least: i16, most: i16| least + random.below((most - least + 1) as usize) as i16;
+    if between(0, 3) > 0 {
+        (between(-50, 350), between(-80, 80), between(150, 1150) as u16)
+    } else {
+        (between(-500, 500), between(-500, 500), 2 * between(1, i16::MAX - 1) as u16)
+    }
 }
 
 proptest! {
@@ -200,7 +250,7 @@ proptest! {
         limits in (10u16..200, 10u16..200, 1u16..400),
         confidences in (0u8..200, 0u8..250),
         heights_mm in prop_oneof![Just([100u16, 3000]), (150u16..1200).prop_map(|h| [h, h + h / 50])],
-        absent in prop::bool::weighted(0.2),
+        source in prop_oneof![1 => Just(Source::Absent), 1 => Just(Source::Given), 3 => Just(Source::Searched)],
         headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
         sectors in 1u8..33,
         searched in prop_oneof![Just(32u16), Just(64), Just(160)],
@@ -221,7 +271,7 @@ proptest! {
             sigma_steps,
             min_confidence: confidences.0,
             sky_confidence: confidences.1,
-            ground: if absent { GroundSource::Absent } else { searched_ground },
+            ground: if source == Source::Searched { searched_ground } else { GroundSource::Absent },
             obstacle_mm: limits.0,
             drop_mm: limits.1,
             min_pixels: limits.2,
@@ -238,9 +288,22 @@ proptest! {
             }
             let finder = finder.get_or_insert_with(|| map.finder(&config));
             let came = rows_that_come(&mut random, height);
-            let scene = scene(&map, config, &came);
+            let mut scene = scene(&map, config, &came);
+            if source == Source::Given {
+                let (pitch_mrad, roll_mrad, height_mm) = pose(&mut random);
+                scene.config.ground = GroundSource::Given { pitch_mrad, roll_mrad, height_mm };
+                prop_assert_eq!(finder.as_mut_view().set_pose(pitch_mrad, roll_mrad, height_mm), Ok(()));
+            }
+            map.rows(finder, |y| scene.came[y]);
+            let blind = finder.finish().err();
+            let view = finder.as_mut_view();
+            prop_assert_eq!(view.blind(), blind);
+            if source == Source::Given {
+                scene.given = view.plane().map(in_whole_numbers);
+                compare_pose(&scene)?;
+            }
             let found = find(&scene, &mut carried);
-            compare(&scene, &map, finder, &found)?;
+            compare(&scene, &view, &found)?;
         }
     }
 }

@@ -37,6 +37,15 @@ impl Line {
         self.at(halves, 0)
     }
 
+    /// Level, slope and lean of the plane below a camera of known pose, radians and mm, unrounded: the parallax
+    /// is `b / H (sin rho cos theta (u - cx) + cos rho cos theta (v - cy) + f sin theta)`.
+    pub fn of_pose(scene: &Scene<'_>, pitch: f64, roll: f64, height_mm: f64) -> [f64; 3] {
+        let unit = 32.0 * 65_536.0 * scene.baseline_16ths as f64 / 16.0 / height_mm;
+        let [slope, lean] = [roll.cos(), roll.sin()].map(|along| unit * along * pitch.cos());
+        let at_centre = unit * pitch.sin() * scene.focal_16ths as f64 / 16.0;
+        [at_centre - slope * scene.cy_halves as f64 / 2.0, slope, lean]
+    }
+
     /// A plane that a camera can see.
     pub(super) fn new(scene: &Scene<'_>, [level, slope, lean]: [i128; 3], variance: i128) -> Option<Self> {
         let inclination = (level + slope * scene.cy_halves / 2) * 16 / scene.focal_16ths;

@@ -59,6 +59,9 @@ pub struct Scene<'a> {
     pub came: &'a [bool],
     /// What the monitor of the cameras says against them.
     pub cameras: Option<BlindReason>,
+    /// The plane of a given pose, in the whole numbers that the core rounds it to: [`Line::of_pose`] says what
+    /// they are to be near to.
+    pub given: Option<Line>,
 }
 
 /// What is in a map.
@@ -157,7 +160,11 @@ pub fn find(scene: &Scene<'_>, carried: &mut (Option<Line>, u32)) -> Found {
     let blind = watchdog::blind(scene, &cells);
     let ground = match scene.config.ground {
         GroundSource::Absent => None,
-        _ => {
+        GroundSource::Given { .. } => {
+            *carried = (scene.given, 0);
+            scene.given
+        }
+        GroundSource::Searched { .. } => {
             let measured = if blind.is_none() { ground::fit(scene, &cells, carried.0) } else { None };
             carried::carry(scene, carried, measured);
             carried.0

@@ -150,7 +150,7 @@ fn main() -> ExitCode {
         Chore::Focus(arguments) => focus::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
         Chore::Readme { check } => readme::run(check),
-        Chore::C => c::run(),
+        Chore::C => c::run().and_then(|()| c::every_method()),
         Chore::Cross => cross::run(),
         Chore::Publish => package::publish(),
         Chore::Header { check } => header::run(check),

@@ -68,6 +68,7 @@ const BEFORE_A_RELEASE: &[Row] = &[
         ("growth", growth::sample),
         ("async", examples::executors),
         ("lints on targets", lints_on_targets),
+        ("every method in C", c::every_method),
     ],
 ];
 

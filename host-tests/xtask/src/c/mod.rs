@@ -15,38 +15,51 @@ mod odometry;
 mod program;
 mod raw;
 
-pub use program::{Core, cargo, cargo_folder, crc32s};
+pub use program::{Core, Scope, cargo, cargo_folder, crc32s};
 
 use crate::header;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
 use firmware_scenes::scene::Scene;
-use program::{CORES, beside, crc32_of, program};
+use program::{beside, crc32_of, program};
 use stereopsis_host::run::MethodName;
 
 /// Frames that the cores have to agree on: width, height, disparities.
 const FRAMES: [(u16, u16, u16); 2] = [(160, 120, 32), (320, 240, 64)];
 
 /// One method over windows and one along paths: the same macro makes all functions of the interface.
-const IN_THE_LARGER: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
+const ONE_OF_A_KIND: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
 
-/// The test step.
+/// The test step: what is refused, and a sample of what is found.
 pub fn run() -> Outcome {
     setup::c()?;
     header::run(true)?;
     misuse::statuses()?;
     misuse::fresh_memory()?;
     misuse::panicking_library()?;
+    found(Scope::Sample)?;
+    components::run()?;
+    misuse::refused()
+}
+
+/// The step before a release: every method, in both sizes.
+pub fn every_method() -> Outcome {
+    setup::c()?;
+    found(Scope::All)
+}
+
+/// Holds what the examples find to what the host's pipeline finds.
+fn found(scope: Scope) -> Outcome {
     let frames = FRAMES
         .map(|(width, height, disparities)| Ok((Pictures::of_scene(Scene { width, height })?, disparities)));
     let frames: Vec<_> = frames.into_iter().collect::<Outcome<_>>()?;
     let runs: Vec<_> = frames
         .iter()
         .flat_map(|(pictures, disparities)| MethodName::ALL.map(|method| (pictures, method, *disparities)))
-        .filter(|&(pictures, method, _)| pictures.width == FRAMES[0].0 || IN_THE_LARGER.contains(&method))
+        .filter(|&(pictures, method, _)| pictures.width == FRAMES[0].0 || ONE_OF_A_KIND.contains(&method))
         .collect();
-    for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs)?) {
+    for (&(pictures, method, disparities), found) in runs.iter().zip(crc32s(&runs, scope)?) {
         let expected = pictures.crc32(method, disparities)?;
         for (core, found) in found {
             let what = format!(
@@ -60,19 +73,17 @@ pub fn run() -> Outcome {
             println!("{what}: crc32 {found:08x}");
         }
     }
-    interrupt()?;
-    raw::run()?;
-    odometry::run()?;
-    components::run()?;
-    misuse::refused()
+    interrupt(scope)?;
+    raw::run(scope)?;
+    odometry::run(scope)
 }
 
 /// Lines that an interrupt hands over give the rows of lines from files, on each core.
-fn interrupt() -> Outcome {
+fn interrupt(scope: Scope) -> Outcome {
     let (width, height, disparities) = FRAMES[0];
     let pictures = Pictures::of_scene(Scene { width, height })?;
     let expected = pictures.crc32(MethodName::Block, disparities)?;
-    for core in CORES {
+    for &core in scope.cores() {
         let program = program(core, MethodName::Block, width, disparities)?;
         let found = crc32_of(core, &beside(&program, "interrupt"), &pictures)?;
         if found != expected {

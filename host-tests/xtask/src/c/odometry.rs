@@ -1,7 +1,7 @@
 //! `examples/c-firmware/odometry.c`: pictures of a pair that moves, their features, and the motions, held to
 //! the same in Rust.
 
-use super::program::{CORES, beside, crc32_in, program, temporary_folder};
+use super::program::{Scope, beside, crc32_in, program, temporary_folder};
 use crate::steps::{Failure, Outcome};
 use firmware_scenes::walk::{FRAMES, HEIGHT, WIDTH, Walk, is_right, turned};
 use std::fs;
@@ -10,11 +10,11 @@ use stereopsis::motion::odometry::Step;
 use stereopsis_host::run::MethodName;
 
 /// On each core the example finds what the host finds.
-pub fn run() -> Outcome {
+pub fn run(scope: Scope) -> Outcome {
     let folder = temporary_folder()?;
     let expected = expected(folder.path())?;
     let (width, _, disparities) = super::FRAMES[0];
-    for core in CORES {
+    for &core in scope.cores() {
         let program = program(core, MethodName::Block, width, disparities)?;
         let found = crc32_in(core, &beside(&program, "odometry"), folder.path())?;
         if found != expected {

@@ -1,6 +1,6 @@
 //! `examples/c-firmware`, built for a core, a method and a capacity, and run.
 
-use super::{FRAMES, IN_THE_LARGER, every};
+use super::{FRAMES, ONE_OF_A_KIND, every};
 use crate::elf::Sizes;
 use crate::parallel;
 use crate::pictures::Pictures;
@@ -28,8 +28,24 @@ pub enum Core {
     Rv32imac,
 }
 
-/// All of them.
-pub const CORES: [Core; 5] = [Core::Host, Core::M4, Core::M7, Core::Rv32imc, Core::Rv32imac];
+/// How much is tried: each method at each size needs a library of its own for each kind of core.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+pub enum Scope {
+    /// One method over windows and one along paths, in small frames, and no second RISC-V.
+    Sample,
+    All,
+}
+
+impl Scope {
+    /// The cores that are tried.
+    pub fn cores(self) -> &'static [Core] {
+        const ALL: [Core; 5] = [Core::Host, Core::M4, Core::M7, Core::Rv32imc, Core::Rv32imac];
+        match self {
+            Self::Sample => &ALL[..4],
+            Self::All => &ALL,
+        }
+    }
+}
 
 /// How long a frame may take: under a second is usual, a program that hangs never ends.
 pub const LIMIT: Duration = Duration::from_secs(120);
@@ -51,14 +67,17 @@ impl Core {
         }
     }
 
-    /// Whether a method is tried on it: one over windows on all cores, one along paths on all but the last,
-    /// which differs from the one before by instructions that no method uses.
-    fn has(self, method: MethodName, width: u16) -> bool {
+    /// Whether a method is tried on it. The last core differs from the one before by instructions that no method
+    /// uses.
+    fn has(self, method: MethodName, width: u16, scope: Scope) -> bool {
         let is_small = width == FRAMES[0].0;
-        match self {
-            Self::Host | Self::M4 | Self::M7 => true,
-            Self::Rv32imc => is_small && IN_THE_LARGER.contains(&method),
-            Self::Rv32imac => is_small && method == MethodName::Block,
+        match (self, scope) {
+            (Self::Host | Self::M4 | Self::M7, Scope::All) => true,
+            (Self::Host | Self::M4 | Self::M7, Scope::Sample) | (Self::Rv32imc, Scope::All) => {
+                is_small && ONE_OF_A_KIND.contains(&method)
+            }
+            (Self::Rv32imc, Scope::Sample) => is_small && method == MethodName::Block,
+            (Self::Rv32imac, _) => is_small && method == MethodName::Block && scope == Scope::All,
         }
     }
 
@@ -107,20 +126,22 @@ pub fn cargo(words: &str) -> Command {
     cargo
 }
 
-/// The CRC-32 of all disparities and flags that the example in C finds in pairs of pictures, on each of
-/// [`CORES`] on which the method is tried.
+/// The CRC-32 of all disparities and flags that the example in C finds in pairs of pictures, on each of the
+/// cores on which the method is tried.
 ///
 /// A board's program is looked through for panics and allocations as well.
-pub fn crc32s(runs: &[(&Pictures, MethodName, u16)]) -> Outcome<Vec<Vec<(Core, u32)>>> {
+pub fn crc32s(runs: &[(&Pictures, MethodName, u16)], scope: Scope) -> Outcome<Vec<Vec<(Core, u32)>>> {
     let all = |cores: &[Core]| {
         let one = |&(pictures, method, disparities): &(&Pictures, MethodName, u16)| {
-            let tried = cores.iter().filter(|core| core.has(method, pictures.width));
+            let tried = cores.iter().filter(|core| core.has(method, pictures.width, scope));
             tried.map(|&core| Ok((core, crc32(core, pictures, method, disparities)?))).collect()
         };
         runs.iter().map(one).collect::<Outcome<Vec<Vec<_>>>>()
     };
     // Boards of a kind share a library: theirs is one thread's work, the desktop's another's.
-    let found = parallel::work(vec![&CORES[..1], &CORES[1..3], &CORES[3..]], all)?;
+    let (desktop, boards) = scope.cores().split_at(1);
+    let (arm, riscv) = boards.split_at(2);
+    let found = parallel::work(vec![desktop, arm, riscv], all)?;
     Ok((0..runs.len()).map(|run| found.iter().flat_map(|rows| rows[run].clone()).collect()).collect())
 }
 

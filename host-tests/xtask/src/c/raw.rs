@@ -1,7 +1,7 @@
 //! `examples/c-firmware/raw.c`: raw pictures, the record in `rig.h`, rectified lines, depths and points, held
 //! to the same in Rust.
 
-use super::program::{CORES, beside, crc32_of, program};
+use super::program::{Scope, beside, crc32_of, program};
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome, root};
 use firmware_scenes::scene::Scene;
@@ -26,11 +26,11 @@ const LOWER: usize = 2;
 const LEAST_ANSWERS: usize = 40;
 
 /// A program for raw pictures on each core finds what the host's pipeline finds.
-pub fn run() -> Outcome {
+pub fn run(scope: Scope) -> Outcome {
     let pictures =
         Pictures::of_scene(Scene { width: SIZE.width, height: SIZE.height })?.with_right_lower(LOWER);
     let expected = expected(&pictures)?;
-    for core in CORES {
+    for &core in scope.cores() {
         let program = program(core, MethodName::Block, SIZE.width, DISPARITIES)?;
         let found = crc32_of(core, &beside(&program, "raw"), &pictures)?;
         if found != expected {

@@ -6,6 +6,7 @@ use super::frame::{self, MOST_STACK};
 use super::measured::{Measured, spread};
 use super::program::{Built, Program};
 use super::{awkward, refusals, tables};
+use crate::c;
 use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
@@ -48,7 +49,8 @@ pub fn run(readme: tables::Readme) -> Outcome {
         println!("checksums on real pairs: NOT RUN, set STEREO_DATA to the folder that holds stereo/");
         return Ok(());
     }
-    checksums::compare(&results, &real)
+    let is_sample = readme == tables::Readme::Sample;
+    checksums::compare(&results, &real, if is_sample { c::Scope::Sample } else { c::Scope::All })
 }
 
 /// What is built, in the order of the tables.

@@ -34,7 +34,7 @@ pub fn on_core(built: &Built, pairs: &[(String, Pictures)]) -> Outcome<Vec<Check
 }
 
 /// Prints the checksums, a column for each core, the host and the example in C, and fails when a row has two.
-pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
+pub fn compare(results: &[Measured], pairs: &[(String, Pictures)], in_c: c::Scope) -> Outcome {
     let mut rows: BTreeMap<_, Vec<(String, u32)>> = BTreeMap::new();
     for result in results {
         let Program { board, method, width, height, disparities, .. } = result.frame.program;
@@ -53,8 +53,8 @@ pub fn compare(results: &[Measured], pairs: &[(String, Pictures)]) -> Outcome {
     let frames = rows.keys().map(scaled).collect::<Outcome<Vec<_>>>()?;
     let runs: Vec<_> =
         frames.iter().map(|(pictures, method, disparities)| (pictures, *method, *disparities)).collect();
-    for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(c::crc32s(&runs)?)
-    {
+    let in_c = c::crc32s(&runs, in_c)?;
+    for ((row, &(pictures, method, disparities)), in_c) in rows.values_mut().zip(&runs).zip(in_c) {
         row.push(("host".to_owned(), pictures.crc32(method, disparities)?));
         // The example in C has to say what the cores say.
         row.extend(in_c.into_iter().map(|(core, crc32)| (format!("C, {core}"), crc32)));

@@ -6,6 +6,7 @@
 //! * `rtl` simulates the block of `examples/fpga` before the library's second half.
 //! * `fuzz` looks for inputs that break a promise.
 //! * `miri` runs what is `unsafe` and no assembly under an interpreter that sees undefined behaviour.
+//! * `races` runs what threads share under ThreadSanitizer.
 //! * `mutants` changes the code and says which changes no test sees.
 //! * `soak` runs thousands of frames of a camera with every fault.
 //! * `view` builds the live page's module and shows the page.
@@ -21,7 +22,8 @@
 //! [`steps`] runs named steps, [`setup`] gets tools, [`mod@test`] is the list of steps, [`mod@firmware`],
 //! [`growth`], [`c`], [`arm`], [`cross`], [`mod@rtl`], [`view`], [`book`], [`package`] and [`readme`] are ten
 //! of them.
-//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`], [`mutants`] and [`soak`] time.
+//! [`altered`] needs data that not everybody has, [`fuzz`], [`miri`], [`races`], [`mutants`] and
+//! [`soak`] time.
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -48,6 +50,7 @@ mod package;
 mod packages;
 mod parallel;
 mod pictures;
+mod races;
 mod readme;
 mod rtl;
 mod setup;
@@ -87,6 +90,8 @@ enum Chore {
     Fuzz(fuzz::Arguments),
     /// Runs what is unsafe and no assembly under Miri, for a 64-bit and a 32-bit processor.
     Miri,
+    /// Runs what threads share under ThreadSanitizer.
+    Races,
     /// Changes the code, a place at a time, and says which changes no test sees.
     Mutants(mutants::Arguments),
     /// Runs thousands of frames of a camera with every fault, and holds each row to the frame without one.
@@ -143,6 +148,7 @@ fn main() -> ExitCode {
         Chore::Rtl(arguments) => rtl::run(&arguments),
         Chore::Fuzz(arguments) => fuzz::run(&arguments),
         Chore::Miri => miri::run(),
+        Chore::Races => races::run(),
         Chore::Mutants(arguments) => mutants::run(&arguments),
         Chore::Soak(arguments) => soak::run(&arguments),
         Chore::View(arguments) => view::run(&arguments),

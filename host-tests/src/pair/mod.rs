@@ -157,6 +157,8 @@ pub struct PairCheck {
     pub search: Option<[u16; 2]>,
     /// The share of the left picture without texture: no grey level changes by 4 within 9 x 9 pixels.
     pub untextured: f64,
+    /// That share of the right picture.
+    pub untextured_right: f64,
     /// The share of both pictures that is white: 254 and more.
     pub over_exposed: f64,
     /// The share of both pictures that is black: 1 and less.
@@ -185,6 +187,7 @@ impl PairCheck {
             beyond_search: if range.is_some() { beyond as f64 / found.len() as f64 } else { 0.0 },
             search: if fault.is_none() { search(pictures, matches) } else { None },
             untextured: untextured(pictures[0]),
+            untextured_right: untextured(pictures[1]),
             over_exposed: share(pictures, |pixel| pixel >= 254),
             under_exposed: share(pictures, |pixel| pixel <= 1),
             out_of_view: range.and(at(0.5)).map(|d| (d / f64::from(pictures[0].width())).clamp(0.0, 1.0)),

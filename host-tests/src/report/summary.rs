@@ -220,8 +220,11 @@ impl Summary {
     pub fn few_answers(&self) -> Option<String> {
         let pair = self.pair.as_ref()?;
         let pixels = f64::from(self.width) * f64::from(self.height);
+        // Both pictures have about the same: what the right one alone lacks its camera did not see.
+        let right_alone = pair.untextured_right > pair.untextured + 0.05;
         let lacks = [
             ("without texture", pair.untextured),
+            ("without texture in the right image", if right_alone { pair.untextured_right } else { 0.0 }),
             ("over-exposed", pair.over_exposed),
             ("under-exposed", pair.under_exposed),
             ("out of the right camera's view", pair.out_of_view.unwrap_or(0.0)),

@@ -203,4 +203,11 @@ fn few_answers_are_explained() {
     let said = text(&run.stderr);
     assert!(run.status.success() && said.contains("only 0.0 % of the pixels have an answer"), "{said}");
     assert!(said.contains("100 % without texture, 100 % over-exposed"), "{said}");
+    // Something covers the right lens.
+    let (width, height) = image::image_dimensions(bench.path("left.png")).expect("a picture");
+    let covered = image::GrayImage::from_pixel(width, height, image::Luma([3]));
+    covered.save(bench.path("covered.png")).expect("a picture");
+    let run = stereo(&arguments(&bench, "left.png", "covered.png", "64"));
+    let said = text(&run.stderr);
+    assert!(said.contains("100 % without texture in the right image; flags"), "{said}");
 }

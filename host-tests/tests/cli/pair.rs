@@ -207,7 +207,7 @@ fn few_answers_are_explained() {
     let (width, height) = image::image_dimensions(bench.path("left.png")).expect("a picture");
     let covered = image::GrayImage::from_pixel(width, height, image::Luma([3]));
     covered.save(bench.path("covered.png")).expect("a picture");
-    let run = stereo(&arguments(&bench, "left.png", "covered.png", "64"));
+    let run = stereo(arguments(&bench, "left.png", "covered.png", "64"));
     let said = text(&run.stderr);
     assert!(said.contains("100 % without texture in the right image; flags"), "{said}");
 }

@@ -8,7 +8,7 @@ use crate::setup;
 use crate::steps::{Failure, Outcome, cargo, command, output_of, root, run as run_command, target_dir};
 
 /// Tests of the crate's own: the queue.
-const OF_THE_CRATE: &[&str] = &["-p", "stereopsis", "--lib", "--", "camera"];
+const OF_THE_CRATE: &[&str] = &["-p", "stereopsis", "--lib", "--", "camera::queue"];
 /// Lines and wakes between two threads, the same in C, bands of a picture, and the cameras that are read
 /// beside the matcher.
 const OF_THE_HOST: &[&str] = &[

@@ -118,7 +118,7 @@ impl Template {
             yy += y * y;
         }
         let determinant = xx * yy - xy * xy;
-        // Along an edge it could be anywhere. The slopes see a pixel more to each side: what is inside may be even.
+        // Along an edge it could be anywhere. Slopes see a pixel more to each side: all inside may be equal.
         if !(own > 0.0 && determinant > 1e-3 * (xx + yy) * (xx + yy)) {
             return Err(TemplateError::Untextured);
         }

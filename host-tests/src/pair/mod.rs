@@ -157,14 +157,13 @@ pub struct PairCheck {
     pub search: Option<[u16; 2]>,
     /// The share of the left picture without texture: no grey level changes by 4 within 9 x 9 pixels.
     pub untextured: f64,
-    /// That share of the right picture.
+    /// That of the right one.
     pub untextured_right: f64,
     /// The share of both pictures that is white: 254 and more.
     pub over_exposed: f64,
     /// The share of both pictures that is black: 1 and less.
     pub under_exposed: f64,
-    /// About the share of the left picture that the right camera does not see, by the median disparity;
-    /// absent when too few features match.
+    /// About the share of the left picture that the right camera does not see; absent with few matches.
     pub out_of_view: Option<f64>,
 }
 

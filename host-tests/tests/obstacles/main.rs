@@ -5,6 +5,7 @@ mod decisions;
 mod evidence;
 mod faults;
 mod geometry;
+mod given;
 mod scenes;
 mod support;
 mod tally;

@@ -1,16 +1,17 @@
 //! The core beside its naive twin, to the bit: cells, ground over frames, stixels, sectors and their scan, of
 //! frames that come whole or in parts.
 
+use super::given::{compare_pose, in_whole_numbers, pose};
 use super::support::{Map, floor};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::obstacles::{
-    Ground, GroundSource, ObstacleConfig, ObstaclesView, Sector as CoreSector, SectorState, StixelKind,
+    GroundSource, ObstacleConfig, ObstaclesView, Sector as CoreSector, SectorState, StixelKind,
 };
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::Random;
-use stereopsis_host::twin::obstacles::{Found, Kind, Line, Scene, Sector, find, sectors};
+use stereopsis_host::twin::obstacles::{Found, Kind, Scene, Sector, find, sectors};
 
 /// A floor with walls, holes, drops, specks and noise.
 pub fn map(random: &mut Random, rig: RectifiedRig, size: [u16; 2]) -> Map {
@@ -113,45 +114,6 @@ pub fn in_words(core: CoreSector) -> Sector {
     }
 }
 
-/// A plane of the core in the words of the twin.
-fn in_whole_numbers(ground: Ground) -> Line {
-    Line {
-        level: ground.level.into(),
-        slope: ground.slope.into(),
-        lean: ground.lean.into(),
-        variance: ground.variance.into(),
-        height_mm: ground.height_mm.into(),
-        pitch_sigma: ground.pitch_sigma.into(),
-    }
-}
-
-/// Compares the plane of a given pose at the corners of the picture with the equation, in `f64`.
-///
-/// The core takes the tangents of pitch and roll to 0.00005, the numbers to `f32`, of which it multiplies up to
-/// eight, and rounds slope and lean.
-fn compare_pose(scene: &Scene<'_>) -> Result<(), TestCaseError> {
-    let GroundSource::Given { pitch_mrad, roll_mrad, height_mm } = scene.config.ground else { return Ok(()) };
-    let [pitch, roll] = [pitch_mrad, roll_mrad].map(|mrad| f64::from(mrad) / 1000.0);
-    let [level, slope, lean] = Line::of_pose(scene, pitch, roll, height_mm.into());
-    let Some(line) = &scene.given else {
-        prop_assert!(slope < 1.0 || slope >= f64::from(1 << 29) || height_mm > 60_000);
-        return Ok(());
-    };
-    let focal = scene.focal_16ths as f64 / 16.0;
-    let centre = scene.cx_16ths as f64 / 16.0;
-    for (u, v) in [(0, 0), (scene.width, 0), (0, scene.height), (scene.width, scene.height)] {
-        let (right, v) = (u as f64 - centre, v as f64);
-        let expected = level + slope * v + lean * right;
-        let found = line.level as f64 + line.slope as f64 * v + line.lean as f64 * right;
-        let reach = slope.abs() * (focal + v + scene.cy_halves as f64) + lean.abs() * right.abs();
-        let of_tangents = 5e-5 * slope.hypot(lean) * (focal + v + right.abs());
-        let tolerance = 1.1 * of_tangents + 8.0 * f64::from(f32::EPSILON) * reach + v + right.abs() + 1.0;
-        prop_assert!((found - expected).abs() <= tolerance, "{} {} {}", found, expected, tolerance);
-    }
-    prop_assert_eq!((line.variance, line.height_mm, line.pitch_sigma), (1, height_mm.into(), 0));
-    Ok(())
-}
-
 /// Compares the sectors and the ranges of a scan, but of a rig with a tie.
 fn compare_sectors(scene: &Scene<'_>, view: &ObstaclesView<'_>, found: &Found) -> Result<(), TestCaseError> {
     if has_tie(scene) {
@@ -221,14 +183,9 @@ enum Source {
     Searched,
 }
 
-/// A pose from which a floor is seen, or any that is allowed.
-fn pose(random: &mut Random) -> (i16, i16, u16) {
-    let mut between = |least: i16, most: i16| least + random.below((most - least + 1) as usize) as i16;
-    if between(0, 3) > 0 {
-        (between(-50, 350), between(-80, 80), between(150, 1150) as u16)
-    } else {
-        (between(-500, 500), between(-500, 500), 2 * between(1, i16::MAX - 1) as u16)
-    }
+impl Source {
+    /// How often each is tried.
+    const SHARES: [Self; 5] = [Self::Absent, Self::Given, Self::Searched, Self::Searched, Self::Searched];
 }
 
 proptest! {
@@ -250,7 +207,7 @@ proptest! {
         limits in (10u16..200, 10u16..200, 1u16..400),
         confidences in (0u8..200, 0u8..250),
         heights_mm in prop_oneof![Just([100u16, 3000]), (150u16..1200).prop_map(|h| [h, h + h / 50])],
-        source in prop_oneof![1 => Just(Source::Absent), 1 => Just(Source::Given), 3 => Just(Source::Searched)],
+        source in prop::sample::select(&Source::SHARES[..]),
         headroom_mm in prop_oneof![Just(u16::MAX), 100u16..2000],
         sectors in 1u8..33,
         searched in prop_oneof![Just(32u16), Just(64), Just(160)],

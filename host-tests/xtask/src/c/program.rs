@@ -67,8 +67,8 @@ impl Core {
         }
     }
 
-    /// Whether a method is tried on it. The last core differs from the one before by instructions that no method
-    /// uses.
+    /// Whether a method is tried on it. The last core differs from the one before by instructions that no
+    /// method uses.
     fn has(self, method: MethodName, width: u16, scope: Scope) -> bool {
         let is_small = width == FRAMES[0].0;
         match (self, scope) {

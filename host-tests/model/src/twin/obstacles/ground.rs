@@ -37,8 +37,8 @@ impl Line {
         self.at(halves, 0)
     }
 
-    /// Level, slope and lean of the plane below a camera of known pose, radians and mm, unrounded: the parallax
-    /// is `b / H (sin rho cos theta (u - cx) + cos rho cos theta (v - cy) + f sin theta)`.
+    /// Level, slope and lean of the plane below a camera of known pose, radians and mm, unrounded: the
+    /// parallax is `b / H (sin rho cos theta (u - cx) + cos rho cos theta (v - cy) + f sin theta)`.
     pub fn of_pose(scene: &Scene<'_>, pitch: f64, roll: f64, height_mm: f64) -> [f64; 3] {
         let unit = 32.0 * 65_536.0 * scene.baseline_16ths as f64 / 16.0 / height_mm;
         let [slope, lean] = [roll.cos(), roll.sin()].map(|along| unit * along * pitch.cos());

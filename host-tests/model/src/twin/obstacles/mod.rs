@@ -59,8 +59,8 @@ pub struct Scene<'a> {
     pub came: &'a [bool],
     /// What the monitor of the cameras says against them.
     pub cameras: Option<BlindReason>,
-    /// The plane of a given pose, in the whole numbers that the core rounds it to: [`Line::of_pose`] says what
-    /// they are to be near to.
+    /// The plane of a given pose, in the whole numbers that the core rounds it to: [`Line::of_pose`] says
+    /// what they are to be near to.
     pub given: Option<Line>,
 }
 

@@ -1,6 +1,6 @@
-//! Null vectors of N - 1 and N - 2 equations by Gaussian elimination, and rank.
+//! Null vectors of fewer equations than unknowns by Gaussian elimination, and rank.
 
-use super::vector::{combine, dot, unit};
+use super::vector::{combine, dot, larger, unit};
 use crate::geometry::Real;
 
 /// The vector x with `A x = 0` for M = N - 1 rows of N numbers, of length one, by elimination: the largest
@@ -17,19 +17,16 @@ pub(crate) fn null_of_rows<T: Real, const M: usize, const N: usize>(
     eliminate(rows, &mut pivots, &mut places);
     // One in the column that no row has its pivot in.
     let mut x = [T::ONE; N];
+    for &place in &places {
+        x[place.min(N - 1)] = T::ZERO;
+    }
     solve(rows, &pivots, &places, &mut x);
+    unit(&mut x);
     (x, pivots)
 }
 
-/// Two vectors of length one that span what M = N - 2 rows leave free, and the pivots.
-pub(crate) fn pencil_of_rows<T: Real, const M: usize, const N: usize>(
-    rows: &mut [[T; N]; M],
-) -> ([[T; N]; 2], [T; M]) {
-    const { assert!(M + 2 == N, "two rows less than unknowns") };
-    basis_of_rows(rows)
-}
-
-/// K vectors of length one that span what M = N - K rows leave free, and the pivots.
+/// K vectors that span what M = N - K rows leave free, and the pivots: each has a one where no row has its
+/// pivot and the other vectors are zero.
 #[inline]
 pub(crate) fn basis_of_rows<T: Real, const M: usize, const N: usize, const K: usize>(
     rows: &mut [[T; N]; M],
@@ -53,35 +50,37 @@ pub(crate) fn basis_of_rows<T: Real, const M: usize, const N: usize, const K: us
 #[inline(never)]
 fn eliminate<T: Real, const N: usize>(rows: &mut [[T; N]], pivots: &mut [T], places: &mut [usize]) {
     let mut rest = rows;
-    for (pivot, place) in pivots.iter_mut().zip(places) {
+    for (pivot_slot, place_slot) in pivots.iter_mut().zip(places) {
         let Some((row, below)) = rest.split_first_mut() else { break };
+        // A copy, which stays in registers.
+        let row = *row;
+        let (mut place, mut pivot) = (0, T::ZERO);
         for (j, &element) in row.iter().enumerate() {
             if element.abs() > pivot.abs() {
-                (*place, *pivot) = (j, element);
+                (place, pivot) = (j, element);
             }
         }
-        let (place, inverse) = ((*place).min(N - 1), inverse_of(*pivot));
+        // Less than N anyway; the compiler cannot know.
+        let place = place.min(N - 1);
+        (*place_slot, *pivot_slot) = (place, pivot);
+        let inverse = inverse_of(pivot);
         for other in below.iter_mut() {
             let by = other[place] * inverse;
-            combine(other, T::ONE, row, -by);
+            combine(other, T::ONE, &row, -by);
             other[place] = T::ZERO;
         }
         rest = below;
     }
 }
 
-/// From x with the unknowns that are free, all of it, at length one.
+/// From x with the unknowns that are free, and zero for the others, all of it.
 #[inline(never)]
 fn solve<T: Real, const N: usize>(rows: &[[T; N]], pivots: &[T], places: &[usize], x: &mut [T; N]) {
-    for &place in places {
-        x[place.min(N - 1)] = T::ZERO;
-    }
     for ((row, &pivot), &place) in rows.iter().zip(pivots).zip(places).rev() {
         // What stands in the columns of the pivots above is zero.
         let value = -dot(row, x) * inverse_of(pivot);
         x[place.min(N - 1)] = value;
     }
-    unit(x);
 }
 
 /// What a row is divided by. In one that depends on the others any number will do: the caller sees it by the
@@ -93,13 +92,13 @@ fn inverse_of<T: Real>(pivot: T) -> T {
 /// How many pivots are more than a `share` of the largest.
 #[inline(never)]
 pub(crate) fn rank<T: Real>(pivots: &[T], share: T) -> usize {
-    let least = pivots.iter().fold(T::ZERO, |most, &pivot| most.max(pivot.abs())) * share;
+    let least = pivots.iter().fold(T::ZERO, |most, pivot| larger(most, pivot.abs())) * share;
     pivots.iter().filter(|pivot| pivot.abs() > least).count()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::{null_of_rows, pencil_of_rows, rank};
+    use super::{basis_of_rows, null_of_rows, rank};
 
     #[test]
     fn two_rows_leave_their_cross_product() {
@@ -121,14 +120,7 @@ mod tests {
     }
     #[test]
     fn one_row_leaves_a_plane() {
-        let ([a, b], pivots) = pencil_of_rows::<f64, 1, 3>(&mut [[1.0, 2.0, -2.0]]);
-        assert_eq!(pivots, [2.0]);
-        for x in [a, b] {
-            assert!(
-                (x[0] + 2.0 * x[1] - 2.0 * x[2]).abs() < 1e-15
-                    && x.iter().map(|x| x * x).sum::<f64>() > 0.999
-            );
-        }
-        assert!(a[0] != 0.0 && b[0] == 0.0);
+        let ([a, b], pivots) = basis_of_rows::<f64, 1, 3, 2>(&mut [[1.0, 2.0, -2.0]]);
+        assert_eq!((a, b, pivots), ([1.0, -0.5, 0.0], [0.0, 1.0, 1.0], [2.0]));
     }
 }

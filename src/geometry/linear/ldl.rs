@@ -1,6 +1,6 @@
 //! Pivoted Cholesky factors `L D L^T`, and the null vector by inverse iteration (Golub & Van Loan 2013).
 
-use super::vector::{combine, dot, unit};
+use super::vector::{combine, dot, larger, unit};
 use crate::geometry::Real;
 
 /// A symmetric, positive semi-definite N x N matrix M as a sum `r r^T / d` of one term for each unknown: `L D
@@ -37,14 +37,17 @@ impl<T: Real, const N: usize> Ldl<T, N> {
             }
             let place = place.min(N - 1);
             if k == 0 {
-                floor = floor.max(pivot * T::EPSILON);
+                floor = larger(floor, pivot * T::EPSILON);
             }
-            let pivot = pivot.max(floor);
+            let pivot = larger(floor, pivot);
             let inverse = T::ONE / pivot;
             *row = m[place];
             row[place] = pivot;
             for (other, &by) in m.iter_mut().zip(row.iter()) {
-                combine(other, T::ONE, row, -by * inverse);
+                // Zero for all that were pivots before.
+                if by != T::ZERO {
+                    combine(other, T::ONE, row, -by * inverse);
+                }
                 other[place] = T::ZERO;
             }
             m[place] = [T::ZERO; N];

@@ -4,8 +4,8 @@
 //!
 //! * [`Ldl`]: `L D L^T` of a symmetric, positive semi-definite matrix, and its null vector by inverse
 //!   iteration.
-//! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`pencil_of_rows`]: the two
-//!   that N - 2 do; [`basis_of_rows`]: those that N - K do. [`rank`]: how many pivots count.
+//! * [`null_of_rows`]: the one vector that N - 1 rows leave free, by elimination; [`basis_of_rows`]: those
+//!   that N - K do. [`rank`]: how many pivots count.
 //! * [`mod@levenberg_marquardt`]: the loop of damped least squares, over any [`LeastSquares`] problem.
 //! * [`covariance6`], [`inverse_information`]: the covariance of numbers as the inverse of their information.
 //! * [`cubic_roots`]: the real roots of a cubic. [`polynomial_roots`]: those of a polynomial of degree ten.
@@ -31,7 +31,7 @@ mod svd3;
 
 pub(crate) use covariance::{covariance6, inverse_information};
 pub(crate) use cubic::cubic_roots;
-pub(crate) use elimination::{basis_of_rows, null_of_rows, pencil_of_rows, rank};
+pub(crate) use elimination::{basis_of_rows, null_of_rows, rank};
 pub(crate) use ldl::Ldl;
 pub(crate) use levenberg_marquardt::{LeastSquares, NormalEquations, levenberg_marquardt};
 pub(crate) use matrix::{columns3, matrix3, product, rows3, times_transposed3, transposed3};
@@ -39,4 +39,4 @@ pub(crate) use projective::Projective;
 pub(crate) use roots::polynomial_roots;
 pub(crate) use rotation::{cayley, skew};
 pub(crate) use svd3::Svd3;
-pub(crate) use vector::{all_finite, dot, unit};
+pub(crate) use vector::{all_finite, dot, larger, unit};

@@ -16,6 +16,13 @@ pub(crate) fn combine<T: Real>(a: &mut [T], s: T, b: &[T], t: T) {
     }
 }
 
+/// The larger of two numbers, without the call that `max` is on cores: the first where the second is not a
+/// number.
+#[inline(always)]
+pub(crate) fn larger<T: Real>(a: T, b: T) -> T {
+    if b > a { b } else { a }
+}
+
 /// Whether none is infinite or not a number.
 #[inline]
 pub(crate) fn all_finite<T: Real>(a: &[T]) -> bool {
@@ -25,7 +32,7 @@ pub(crate) fn all_finite<T: Real>(a: &[T]) -> bool {
 /// Brings `x` to length one.
 pub(crate) fn unit<T: Real>(x: &mut [T]) {
     // By the largest element first: its square may be more than a number holds.
-    let by = T::ONE / x.iter().fold(T::ZERO, |most, &v| most.max(v.abs()));
+    let by = T::ONE / x.iter().fold(T::ZERO, |most, v| larger(most, v.abs()));
     x.iter_mut().for_each(|v| *v *= by);
     let by = T::ONE / dot(x, x).sqrt();
     x.iter_mut().for_each(|v| *v *= by);

@@ -6,7 +6,9 @@ use super::fundamental::Fundamental;
 use super::normalise::Both;
 use super::weighted::Weighted;
 use crate::geometry::Real;
-use crate::geometry::linear::{Ldl, dot, null_of_rows, rank, rows3, times_transposed3, transposed3};
+use crate::geometry::linear::{
+    Ldl, basis_of_rows, dot, larger, rank, rows3, times_transposed3, transposed3, unit,
+};
 
 /// Squarings at most: of a second singular value that is a thousandth more than the smallest e^-8 is left
 /// after them, and where the two are nearer than that, either matrix is as near.
@@ -54,13 +56,13 @@ pub fn eight_point_weighted<T: Real>(
 }
 
 fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointError> {
-    let count = seen.iter().count();
+    // A sum with something infinite or not a number in it is neither.
+    let (count, sum) = seen.iter().fold((0, T::ZERO), |(count, sum), (s, w)| {
+        (count + 1, sum + s.first.x + s.first.y + s.second.x + s.second.y + w)
+    });
     if count < 8 {
         return Err(EightPointError::TooFew);
     }
-    // A sum with something infinite or not a number in it is neither.
-    let sum =
-        seen.iter().fold(T::ZERO, |sum, (s, w)| sum + s.first.x + s.first.y + s.second.x + s.second.y + w);
     if !sum.is_finite() {
         return Err(EightPointError::NotFinite);
     }
@@ -70,28 +72,25 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
         return Err(if repeated { EightPointError::Repeated } else { EightPointError::Line });
     };
 
-    // The row of a correspondence: f11 f12 f13 f21 ... of p^T F p', which are p's numbers times those of p'.
-    // Elimination works on the rows, the factor on their squares.
+    // Elimination works on the equations, the factor on their squares.
     let on_it = T::of(degenerate::ON_IT);
     let (f, pivots, on_it, least) = if count == 8 {
-        let mut rows = [[T::ONE; 9]; 8];
-        for (row, (seen, _)) in rows.iter_mut().zip(seen.iter()) {
-            let (p, q) = both.apply(seen);
-            *row = [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE];
-        }
-        let (f, pivots) = null_of_rows(&mut rows);
-        (f, pivots, on_it.max(T::EPSILON * T::of(1024.0)), T::EPSILON * T::of(64.0))
+        let (f, pivots) = of_eight(seen, &both);
+        (f, pivots, larger(on_it, T::EPSILON * T::of(1024.0)), T::EPSILON * T::of(64.0))
     } else {
         let ldl = Ldl::<T, 9>::new(&mut normal_matrix(seen, &both));
         let [a, b, c, d, e, f, g, h, _] = *ldl.pivots();
-        let least = T::of(1e-14).max(T::EPSILON * T::of(4.0));
-        let on_it = (on_it * on_it).max(T::EPSILON * T::of(32.0));
+        let least = larger(T::of(1e-14), T::EPSILON * T::of(4.0));
+        let on_it = larger(on_it * on_it, T::EPSILON * T::of(32.0));
         (ldl.null_vector(), [a, b, c, d, e, f, g, h], on_it, least)
     };
     let f = rows3(f);
-    let cofactors = cofactors(&f);
     let full = rank(&pivots, on_it);
     if full < 8 {
+        // Of any size until here.
+        let mut f = f;
+        unit(f.as_flattened_mut());
+        let cofactors = cofactors(&f);
         if let Some(reason) = degenerate::reason(seen, full, dot(&f[0], &cofactors[0]), &cofactors) {
             return Err(reason);
         }
@@ -99,8 +98,28 @@ fn solve<T: Real>(seen: Weighted<'_, T>) -> Result<Fundamental<T>, EightPointErr
             return Err(EightPointError::Undetermined);
         }
     }
-    let found = Fundamental::of_rows(both.in_pixels(nearest_singular(&f, &cofactors)));
-    found.sound().ok_or(EightPointError::NotFinite)
+    let found = Fundamental::of_rows(both.in_pixels(nearest_singular(&f)));
+    if found.is_sound() { Ok(found) } else { Err(EightPointError::NotFinite) }
+}
+
+/// The elements of the normalised F of eight correspondences, of any size, and the pivots of its equations.
+///
+/// A row has the factors of f11, f12, f13, f21 ... in `p^T F p'`: p's numbers times those of p'. That of f33
+/// is one in all rows: less the first, the others have eight unknowns, and the first, whose pivot is that
+/// one, gives f33.
+fn of_eight<T: Real>(seen: Weighted<'_, T>, both: &Both<T>) -> ([T; 9], [T; 8]) {
+    let mut rows = [[T::ZERO; 8]; 8];
+    for (row, (seen, _)) in rows.iter_mut().zip(seen.iter()) {
+        let (p, q) = both.apply(seen);
+        *row = [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y];
+    }
+    let [first, others @ ..] = &mut rows;
+    for row in others.iter_mut() {
+        row.iter_mut().zip(first.iter()).for_each(|(element, &of_first)| *element -= of_first);
+    }
+    let ([x], [p, q, r, s, t, u, v]) = basis_of_rows(others);
+    let [a, b, c, d, e, f, g, h] = x;
+    ([a, b, c, d, e, f, g, h, -dot(first, &x)], [T::ONE, p, q, r, s, t, u, v])
 }
 
 /// The sum of `w r r^T` over the rows r of all correspondences. r is p times p', so that of its 81 elements
@@ -136,8 +155,8 @@ fn normal_matrix<T: Real>(seen: Weighted<'_, T>, both: &Both<T>) -> [[T; 9]; 9] 
 ///
 /// v is the eigenvector of the largest eigenvalue of `C^T C`, where C is F's matrix of cofactors: its
 /// singular values are the products of two of F's. The matrix is squared until nothing else is left in it.
-fn nearest_singular<T: Real>(f: &[[T; 3]; 3], cofactors: &[[T; 3]; 3]) -> [[T; 3]; 3] {
-    let columns = transposed3(*cofactors);
+fn nearest_singular<T: Real>(f: &[[T; 3]; 3]) -> [[T; 3]; 3] {
+    let columns = transposed3(cofactors(f));
     let mut power = times_transposed3(&columns, &columns);
     for _ in 0..MOST_SQUARINGS {
         let by = T::ONE / trace(&power);
@@ -181,7 +200,7 @@ mod tests {
     #[test]
     fn the_nearest_singular_matrix_drops_the_smallest_value() {
         let f = [[3.0, 0.0, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 2.0_f64]];
-        let found = nearest_singular(&f, &cofactors(&f));
+        let found = nearest_singular(&f);
         let expected = [[3.0, 0.0, 0.0], [0.0, 0.0, 0.0], [0.0, 0.0, 2.0]];
         let off = found.as_flattened().iter().zip(expected.as_flattened()).map(|(a, b)| (a - b).abs());
         assert!(off.fold(0.0, f64::max) < 1e-15, "{found:?}");

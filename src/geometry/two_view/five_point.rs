@@ -6,7 +6,7 @@
 )]
 
 use crate::geometry::Real;
-use crate::geometry::linear::{basis_of_rows, polynomial_roots, rank};
+use crate::geometry::linear::{basis_of_rows, polynomial_roots, rank, unit};
 use nalgebra::{Matrix3, Point2, Vector3};
 
 /// Up to ten essential matrices.
@@ -52,10 +52,11 @@ pub(crate) fn five_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 5]) -> Essenti
         let [a, b, c, d] = [p.x, p.y, q.x, q.y].map(Real::to_f64);
         *row = [a * c, a * d, a, b * c, b * d, b, c, d, 1.0];
     }
-    let (basis, pivots): ([[f64; 9]; 4], _) = basis_of_rows(&mut rows);
+    let (mut basis, pivots): ([[f64; 9]; 4], _) = basis_of_rows(&mut rows);
     if rank(&pivots, 1e-9) < 5 {
         return candidates;
     }
+    basis.iter_mut().for_each(|vector| unit(vector));
     let Some(below) = eliminated(constraints(&basis)) else { return candidates };
     let rows = in_z(&below);
     let (roots, count) = polynomial_roots(&determinant(&rows));

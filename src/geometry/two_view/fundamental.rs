@@ -58,9 +58,14 @@ impl<T: Real> Fundamental<T> {
         Self::of_singular(&balanced.restored(&singular)).sound().ok_or(FundamentalError::NotFinite)
     }
 
+    /// Whether it is of size one, which what is not finite is not.
+    pub(crate) fn is_sound(&self) -> bool {
+        (self.matrix.norm_squared() - T::ONE).abs() < T::of(2e-4)
+    }
+
     /// This matrix, if it is of size one.
     pub(crate) fn sound(self) -> Option<Self> {
-        ((self.matrix.norm() - T::ONE).abs() < T::of(1e-4)).then_some(self)
+        self.is_sound().then_some(self)
     }
 
     /// The matrix at size one, of what is known to be singular and finite.

@@ -1,10 +1,10 @@
 //! The seven-point algorithm for F (Hartley & Zisserman 2004, 11.1.2).
 
 use crate::geometry::Real;
-use crate::geometry::linear::{columns3, cubic_roots, matrix3, pencil_of_rows, rank, rows3};
+use crate::geometry::linear::{basis_of_rows, columns3, cubic_roots, larger, matrix3, rank, rows3};
 use nalgebra::{Matrix3, Point2};
 
-/// Up to three fundamental matrices.
+/// Up to three fundamental matrices, of any size.
 pub(crate) type Candidates<T> = heapless::Vec<Matrix3<T>, 3>;
 
 /// The singular matrices F with `p^T F p' = 0` for seven pairs of normalised points, one or three (Hartley &
@@ -21,8 +21,8 @@ pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candid
     for (row, (p, q)) in rows.iter_mut().zip(seen) {
         *row = [p.x * q.x, p.x * q.y, p.x, p.y * q.x, p.y * q.y, p.y, q.x, q.y, T::ONE];
     }
-    let ([g, h], pivots) = pencil_of_rows(&mut rows);
-    if rank(&pivots, T::of(1e-7).max(T::EPSILON * T::of(32.0))) < 7 {
+    let ([g, h], pivots) = basis_of_rows(&mut rows);
+    if rank(&pivots, larger(T::of(1e-7), T::EPSILON * T::of(32.0))) < 7 {
         return candidates;
     }
     let (g, h) = (matrix3(&rows3(g)), matrix3(&rows3(h)));
@@ -36,7 +36,7 @@ pub(crate) fn seven_point<T: Real>(seen: &[(Point2<T>, Point2<T>); 7]) -> Candid
     for &x in roots.iter().take(count) {
         let f = if swapped { h + g * x } else { g + h * x };
         // There are no more than three.
-        let _ = candidates.push(f / f.norm());
+        let _ = candidates.push(f);
     }
     candidates
 }
@@ -63,7 +63,11 @@ mod tests {
             });
         let candidates = seven_point(&seen);
         let f = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0) / 2.0_f64.sqrt();
-        let off = candidates.iter().map(|c| (c - f).amax().min((c + f).amax())).fold(f64::MAX, f64::min);
+        let off = candidates
+            .iter()
+            .map(|c| c / c.norm())
+            .map(|c| (c - f).amax().min((c + f).amax()))
+            .fold(f64::MAX, f64::min);
         assert!(off < 1e-12, "{off}");
         for c in &candidates {
             assert!(c.determinant().abs() < 1e-14);

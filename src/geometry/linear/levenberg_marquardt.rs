@@ -42,6 +42,12 @@ pub(crate) trait LeastSquares<T: Real, const N: usize> {
     /// cost is known not to be below `bound`.
     fn equations(&self, at: &Self::Estimate, bound: Option<T>) -> Option<NormalEquations<T, N>>;
 
+    /// The equations about the estimate of the last step that is allowed, which moves no further: a problem
+    /// whose caller does not want them may leave all but the cost at zero.
+    fn last_equations(&self, at: &Self::Estimate, bound: Option<T>) -> Option<NormalEquations<T, N>> {
+        self.equations(at, bound)
+    }
+
     /// The estimate after a step of the N numbers.
     fn moved(&self, from: &Self::Estimate, step: &[T; N]) -> Self::Estimate;
 
@@ -81,7 +87,7 @@ pub(crate) fn levenberg_marquardt<T: Real, P: LeastSquares<T, N>, const N: usize
     let mut best = start;
     let mut equations = problem.equations(&best, None)?;
     let mut damping = T::of(P::FIRST_DAMPING);
-    for _ in 0..most_steps {
+    for steps in 1..=most_steps {
         let mut matrix = equations.matrix;
         for (i, row) in matrix.iter_mut().enumerate() {
             if let Some(diagonal) = row.get_mut(i) {
@@ -91,8 +97,12 @@ pub(crate) fn levenberg_marquardt<T: Real, P: LeastSquares<T, N>, const N: usize
         let step = Ldl::new(&mut matrix).solve(&equations.right);
         let there = problem.moved(&best, &step);
         let before = equations.cost;
-        let next =
-            problem.equations(&there, Some(before)).filter(|next| problem.is_better(before, next.cost));
+        let next = if steps < most_steps {
+            problem.equations(&there, Some(before))
+        } else {
+            problem.last_equations(&there, Some(before))
+        };
+        let next = next.filter(|next| problem.is_better(before, next.cost));
         if let Some(next) = next {
             (best, equations) = (there, next);
             damping = problem.after_taken(damping);

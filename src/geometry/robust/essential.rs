@@ -10,7 +10,9 @@ use super::refine::{Matrix, refine};
 use super::search::Search;
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
-use crate::geometry::two_view::{Correspondence, Essential, EssentialError, Fundamental, five_point};
+use crate::geometry::two_view::{
+    Correspondence, Essential, EssentialCandidates, EssentialError, Fundamental, five_point,
+};
 use nalgebra::Matrix3;
 
 /// Steps of the refinement at most.
@@ -71,19 +73,16 @@ pub fn robust_essential<T: Real>(
     Ok(RobustEssential { essential, inliers: count, rms_px, samples, miss_probability: search.missed })
 }
 
-impl<'a, T: Real> Estimator<SAMPLE> for Search<'a, T, SAMPLE> {
+impl<T: Real> Estimator<SAMPLE> for Search<'_, T, SAMPLE> {
     type Model = Matrix3<T>;
+    type Models = EssentialCandidates<T>;
 
     fn draw(&mut self, drawn: u32) -> [usize; SAMPLE] {
         self.sampler.next(drawn)
     }
 
-    fn models(&self, sample: &[usize; SAMPLE]) -> impl Iterator<Item = Matrix3<T>> + use<'a, T> {
-        let [first, second] = self.frames;
-        let sample = self.at(sample).map(|seen| seen.map(|s| (first.apply(s.first), second.apply(s.second))));
-        // By their places: the iterator of the vector itself can panic, as far as the compiler sees.
-        let candidates = sample.map(|rays| five_point(&rays)).unwrap_or_default();
-        (0..candidates.len()).map_while(move |i| candidates.get(i).copied())
+    fn models(&self, sample: &[usize; SAMPLE]) -> EssentialCandidates<T> {
+        five_point(&self.normalised(sample))
     }
 
     fn consider(&mut self, model: &Matrix3<T>, _sample: &[usize; SAMPLE]) {

@@ -3,7 +3,7 @@
 use crate::geometry::Real;
 use crate::geometry::camera::Camera;
 use crate::geometry::two_view::Correspondence;
-use nalgebra::{Matrix3, Point2, Vector2};
+use nalgebra::{Matrix3, Point2, Vector2, Vector3};
 
 /// `x = a (u - cx) + b (v - cy)`, `y = d (v - cy)`: an upper triangular matrix before homogeneous pixels.
 #[derive(Clone, Copy)]
@@ -60,6 +60,13 @@ impl<T: Real> Frame<T> {
     pub(super) fn steepest(&self, x: T, y: T) -> (T, T) {
         let (u, v) = (self.a * x, self.b * x + self.d * y);
         (self.a * u + self.b * v, self.d * v)
+    }
+
+    /// The line `l M` of pixels, of a line l of the frame.
+    #[inline(always)]
+    pub(super) fn of_line(&self, l: &Vector3<T>) -> Vector3<T> {
+        let (x, y) = (self.a * l.x, self.b * l.x + self.d * l.y);
+        Vector3::new(x, y, l.z - x * self.cx - y * self.cy)
     }
 
     /// The matrix of the frame, `x = M u`.

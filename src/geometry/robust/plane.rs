@@ -7,9 +7,9 @@
 
 use super::frame::Frame;
 use crate::geometry::Real;
-use crate::geometry::linear::{columns3, product, skew};
+use crate::geometry::linear::{columns3, larger, product, skew};
 use crate::geometry::two_view::{Correspondence, least_squares};
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Point2, Vector3};
 
 /// Triplets of a sample of seven: any five of the seven hold one of them.
 const TRIPLETS: [[usize; 3]; 5] = [[0, 1, 2], [3, 4, 5], [0, 1, 6], [3, 4, 6], [2, 5, 6]];
@@ -34,7 +34,7 @@ impl<T: Real> Plane<T> {
         TRIPLETS.iter().find_map(|triplet| {
             let [Some(x), Some(y), Some(z)] = triplet.map(|i| sample.get(i).copied()) else { return None };
             let plane = Self::through(f, [x, y, z])?;
-            (sample.iter().filter(|s| plane.distance_squared_px2(s) < px2).count() >= 5).then_some(plane)
+            (sample.iter().filter(|s| plane.holds(s, px2)).count() >= 5).then_some(plane)
         })
     }
 
@@ -64,7 +64,7 @@ impl<T: Real> Plane<T> {
         if count <= 4 {
             return (*self, count);
         }
-        let on = seen.iter().filter(|s| self.distance_squared_px2(s) < px2);
+        let on = seen.iter().filter(|s| self.holds(s, px2));
         let [first, second] = frames;
         let (h, _) = least_squares(on.map(|s| (first.apply(s.first), second.apply(s.second))));
         let fitted = Self::new(product(&product(&first.inverse(), &h), &second.matrix()));
@@ -74,7 +74,17 @@ impl<T: Real> Plane<T> {
 
     /// How many of every `every`th are on the plane to within `px2` px squared.
     pub(super) fn count(&self, seen: &[Correspondence<T>], every: usize, px2: T) -> usize {
-        seen.iter().step_by(every.max(1)).filter(|s| self.distance_squared_px2(s) < px2).count()
+        seen.iter().step_by(every.max(1)).filter(|s| self.holds(s, px2)).count()
+    }
+
+    /// Whether [`Self::distance_squared_px2`] is less than `px2`, without a division.
+    #[inline]
+    fn holds(&self, s: &Correspondence<T>, px2: T) -> bool {
+        let near = |there: Vector3<T>, p: &Point2<T>| {
+            (there.xy() - p.coords * there.z).norm_squared() < px2 * there.z * there.z
+        };
+        near(self.matrix * s.second.to_homogeneous(), &s.first)
+            && near(self.adjugate * s.first.to_homogeneous(), &s.second)
     }
 
     /// The larger of the two squared distances to where the plane puts the other image's point, px^2.
@@ -83,30 +93,43 @@ impl<T: Real> Plane<T> {
         let back = self.adjugate * s.first.to_homogeneous();
         let first = (there.xy() / there.z - s.first.coords).norm_squared();
         let second = (back.xy() / back.z - s.second.coords).norm_squared();
-        first.max(second)
+        larger(first, second)
     }
 }
 
 /// The epipole e with `F^T e = 0`, at length one: the largest of the cross products of F's columns.
-pub(super) fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
+fn left_null<T: Real>(f: &Matrix3<T>) -> Option<Vector3<T>> {
+    let (epipole, squared) = largest_cross(f);
+    let size = squared.sqrt();
+    (size > T::ZERO && size.is_finite()).then(|| epipole / size)
+}
+
+/// The largest of the cross products of F's columns, and its squared length.
+#[inline(never)]
+fn largest_cross<T: Real>(f: &Matrix3<T>) -> (Vector3<T>, T) {
     let [a, b, c] = columns3(f);
-    let mut best = a.cross(&b);
+    let mut best = (a.cross(&b), T::ZERO);
+    best.1 = best.0.norm_squared();
     for other in [a.cross(&c), b.cross(&c)] {
-        if other.norm_squared() > best.norm_squared() {
-            best = other;
+        let squared = other.norm_squared();
+        if squared > best.1 {
+            best = (other, squared);
         }
     }
-    let size = best.norm();
-    (size > T::ZERO && size.is_finite()).then(|| best / size)
+    best
 }
 
 /// Whether all correspondences of a sample are before both cameras, or can be: the line `F p'` and the one
 /// from the epipole to p have the same sense for all of them (Chum, Werner & Matas 2004).
 pub(super) fn one_sense<T: Real>(f: &Matrix3<T>, sample: &[Correspondence<T>; 7]) -> bool {
-    let Some(epipole) = left_null(f) else { return false };
-    let senses = sample.map(|s| {
+    let (epipole, squared) = largest_cross(f);
+    if !(squared > T::ZERO && squared.is_finite()) {
+        return false;
+    }
+    let mut senses = sample.iter().map(|s| {
         let line = f * s.second.to_homogeneous();
         epipole.cross(&s.first.to_homogeneous()).dot(&line) > T::ZERO
     });
-    senses.iter().all(|&sense| sense) || !senses.iter().any(|&sense| sense)
+    let first = senses.next();
+    senses.all(|sense| Some(sense) == first)
 }

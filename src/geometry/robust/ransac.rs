@@ -4,12 +4,14 @@
 pub(super) trait Estimator<const K: usize> {
     /// What a sample gives.
     type Model;
+    /// All that a sample gives.
+    type Models: AsRef<[Self::Model]>;
 
     /// Places of the next sample, after `drawn` others.
     fn draw(&mut self, drawn: u32) -> [usize; K];
 
     /// The models of a sample, by the minimal solver.
-    fn models(&self, sample: &[usize; K]) -> impl Iterator<Item = Self::Model> + use<Self, K>;
+    fn models(&self, sample: &[usize; K]) -> Self::Models;
 
     /// Scores a model and, where it is better than the best, refines it (LO-RANSAC; Chum, Matas & Kittler
     /// 2003) and keeps it.
@@ -25,8 +27,8 @@ pub(super) fn ransac<E: Estimator<K>, const K: usize>(estimator: &mut E, most_sa
     while !estimator.is_enough(drawn) && drawn < most_samples {
         let sample = estimator.draw(drawn);
         drawn += 1;
-        for model in estimator.models(&sample) {
-            estimator.consider(&model, &sample);
+        for model in estimator.models(&sample).as_ref() {
+            estimator.consider(model, &sample);
         }
     }
     drawn

@@ -11,7 +11,7 @@ use super::loss::{Biweight, weight_and_gain};
 use crate::geometry::Real;
 use crate::geometry::linear::{LeastSquares, NormalEquations, levenberg_marquardt};
 use crate::geometry::two_view::Correspondence;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 /// The matrix to refine, which says which of its seven parameters are free.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -53,23 +53,29 @@ pub(super) fn refine<T: Real>(
     levenberg_marquardt(&problem, start, steps.min(MOST_STEPS)).map_or(start, |(best, _)| best)
 }
 
-impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
-    type Estimate = Factored<T>;
+/// A correspondence beside an estimate, in the frames.
+struct Beside<T: Real> {
+    p: Vector3<T>,
+    q: Vector3<T>,
+    /// What a step of a pixel along the normals of the lines is.
+    steps: [(T, T); 2],
+    residual: T,
+    /// One over the squared gradient of the residual, by px.
+    per_steep: T,
+    weight: T,
+    gain: T,
+}
 
-    #[inline(never)]
-    fn equations(&self, f: &Factored<T>, _bound: Option<T>) -> Option<NormalEquations<T, FREE>> {
-        let Self { kind, seen, frames: [first, second], loss, every } = *self;
-        let mut gain = T::ZERO;
-        let mut matrix = [[T::ZERO; FREE]; FREE];
-        let mut right = [T::ZERO; FREE];
-        let (u, v) = (f.u, f.v);
-        let m = f.matrix();
+impl<T: Real> SampsonLoss<'_, T> {
+    /// Calls `each` with all that have a weight beside the matrix m.
+    #[inline(always)]
+    fn for_each_beside(&self, m: &Matrix3<T>, mut each: impl FnMut(Beside<T>)) {
+        let Self { seen, frames: [first, second], loss, every, .. } = *self;
         let per_width = T::ONE / loss.width_squared;
         // Never 0, which the compiler has to see.
         for s in seen.iter().step_by(every.max(1)) {
             let (p, q) = (first.apply(s.first), second.apply(s.second));
             let (p, q) = (Vector3::new(p.x, p.y, T::ONE), Vector3::new(q.x, q.y, T::ONE));
-            // The lines, and what a step of a pixel along their normals is in the frame.
             let line = m * q;
             let other = m.tr_mul(&p);
             let (gx, gy) = first.steepest(line.x, line.y);
@@ -81,11 +87,27 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
                 continue;
             }
             let per_steep = T::ONE / steep;
-            let (weight, gained) = weight_and_gain(squared * per_steep * per_width);
-            gain += gained;
+            let (weight, gain) = weight_and_gain(squared * per_steep * per_width);
+            each(Beside { p, q, steps: [(gx, gy), (hx, hy)], residual, per_steep, weight, gain });
+        }
+    }
+}
+
+impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
+    type Estimate = Factored<T>;
+
+    #[inline(never)]
+    fn equations(&self, f: &Factored<T>, _bound: Option<T>) -> Option<NormalEquations<T, FREE>> {
+        let mut cost = T::ZERO;
+        let mut matrix = [[T::ZERO; FREE]; FREE];
+        let mut right = [T::ZERO; FREE];
+        let (u, v) = (f.u, f.v);
+        self.for_each_beside(&f.matrix(), |Beside { p, q, steps, residual, per_steep, weight, gain }| {
+            cost -= gain;
             // The derivative of Sampson's distance is the residual's at the corrected points, to within the
             // square of the correction over the size of the picture.
             let by = residual * per_steep;
+            let [(gx, gy), (hx, hy)] = steps;
             let p = Vector3::new(p.x - by * gx, p.y - by * gy, T::ONE);
             let q = Vector3::new(q.x - by * hx, q.y - by * hy, T::ONE);
             let d = f.derivatives(&u.tr_mul(&p), &v.tr_mul(&q));
@@ -97,14 +119,14 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
                     matrix[i][j] += wd * d[j];
                 }
             }
-        }
+        });
         let upper = matrix;
         for (i, row) in matrix.iter_mut().enumerate() {
             for (element, other) in row.iter_mut().zip(&upper).take(i) {
                 *element = other.get(i).copied().unwrap_or(T::ZERO);
             }
         }
-        if kind == Matrix::Essential {
+        if self.kind == Matrix::Essential {
             let [.., sixth, seventh] = &mut right;
             (*sixth, *seventh) = (T::ZERO, T::ZERO);
             for (k, row) in matrix.iter_mut().enumerate() {
@@ -113,7 +135,15 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
                 }
             }
         }
-        Some(NormalEquations { matrix, right, cost: -gain })
+        Some(NormalEquations { matrix, right, cost })
+    }
+
+    /// The cost alone: the estimate is what is wanted.
+    #[inline(never)]
+    fn last_equations(&self, f: &Factored<T>, _bound: Option<T>) -> Option<NormalEquations<T, FREE>> {
+        let mut equations = NormalEquations::new();
+        self.for_each_beside(&f.matrix(), |Beside { gain, .. }| equations.cost -= gain);
+        Some(equations)
     }
 
     fn moved(&self, from: &Factored<T>, step: &[T; FREE]) -> Factored<T> {

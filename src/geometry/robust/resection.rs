@@ -6,7 +6,7 @@ use super::prosac::Sampler;
 use super::ransac::{Estimator, ransac};
 use super::reprojection::Reprojection;
 use crate::geometry::Real;
-use crate::geometry::absolute::{Landmark, p3p};
+use crate::geometry::absolute::{Landmark, P3pPoses, p3p};
 use crate::geometry::camera::{Camera, Pose};
 use crate::geometry::linear::covariance6;
 use nalgebra::{Matrix6, Point3, Vector3};
@@ -157,14 +157,24 @@ struct Search<'a, T: Real> {
     needed: u32,
 }
 
-impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
+/// The poses of a sample, if it has any.
+struct Poses<T: Real>(Option<P3pPoses<T>>);
+
+impl<T: Real> AsRef<[Pose<T>]> for Poses<T> {
+    fn as_ref(&self) -> &[Pose<T>] {
+        self.0.as_ref().map_or(&[], P3pPoses::as_slice)
+    }
+}
+
+impl<T: Real> Estimator<MINIMUM> for Search<'_, T> {
     type Model = Pose<T>;
+    type Models = Poses<T>;
 
     fn draw(&mut self, drawn: u32) -> [usize; MINIMUM] {
         self.sampler.next(drawn)
     }
 
-    fn models(&self, sample: &[usize; MINIMUM]) -> impl Iterator<Item = Pose<T>> + use<'a, T> {
+    fn models(&self, sample: &[usize; MINIMUM]) -> Poses<T> {
         let mut rays = [Vector3::z(); MINIMUM];
         let mut points = [Point3::origin(); MINIMUM];
         for ((ray, point), &place) in rays.iter_mut().zip(&mut points).zip(sample) {
@@ -173,9 +183,7 @@ impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T> {
                 *point = landmark.world;
             }
         }
-        let poses = p3p(&rays, &points).ok();
-        let at = move |i: usize| poses.as_ref().and_then(|p| p.as_slice().get(i).copied());
-        (0..4).map_while(at)
+        Poses(p3p(&rays, &points).ok())
     }
 
     fn consider(&mut self, model: &Pose<T>, _sample: &[usize; MINIMUM]) {

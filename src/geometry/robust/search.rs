@@ -10,9 +10,9 @@ use super::ransac::Estimator;
 use super::refine::{Matrix, refine};
 use super::sprt::{Score, Sprt};
 use crate::geometry::Real;
-use crate::geometry::linear::product;
-use crate::geometry::two_view::{Correspondence, seven_point};
-use nalgebra::Matrix3;
+use crate::geometry::linear::{columns3, product};
+use crate::geometry::two_view::{Candidates, Correspondence, seven_point};
+use nalgebra::{Matrix3, Point2};
 
 /// Correspondences of a sample.
 pub(super) const MINIMUM: usize = 7;
@@ -95,18 +95,27 @@ impl<'a, T: Real, const K: usize> Search<'a, T, K> {
     }
 
     /// The correspondences at those places.
-    pub(super) fn at(&self, places: &[usize; K]) -> Option<[Correspondence<T>; K]> {
-        let mut sample = [*self.seen.first()?; K];
-        for (slot, &place) in sample.iter_mut().zip(places) {
-            *slot = *self.seen.get(place)?;
-        }
-        Some(sample)
+    #[inline]
+    pub(super) fn at(&self, places: &[usize; K]) -> [Correspondence<T>; K] {
+        let none = Correspondence::new(T::ZERO, T::ZERO, T::ZERO, T::ZERO);
+        places.map(|place| self.seen.get(place).copied().unwrap_or(none))
     }
 
-    /// From the frames to px.
+    /// The pairs of points at those places, in the frames.
+    #[inline]
+    pub(super) fn normalised(&self, places: &[usize; K]) -> [(Point2<T>, Point2<T>); K] {
+        let [first, second] = &self.frames;
+        self.at(places).map(|s| (first.apply(s.first), second.apply(s.second)))
+    }
+
+    /// `M^T F M'`: from the frames to px, and of another size.
+    #[inline(never)]
     pub(super) fn in_pixels(&self, f: &Matrix3<T>) -> Matrix3<T> {
-        let f = product(&product(&self.frames[0].matrix().transpose(), f), &self.frames[1].matrix());
-        f / f.norm()
+        let [first, second] = &self.frames;
+        let columns = columns3(f).map(|column| first.of_line(&column));
+        let rows = columns3(&Matrix3::from_columns(&columns).transpose());
+        let rows = rows.map(|row| second.of_line(&row));
+        Matrix3::from_columns(&rows).transpose()
     }
 
     /// Where an evaluation of the correspondences begins, and the step by which it goes on.
@@ -152,23 +161,20 @@ impl<'a, T: Real, const K: usize> Search<'a, T, K> {
     }
 }
 
-impl<'a, T: Real> Estimator<MINIMUM> for Search<'a, T, MINIMUM> {
+impl<T: Real> Estimator<MINIMUM> for Search<'_, T, MINIMUM> {
     type Model = Matrix3<T>;
+    type Models = Candidates<T>;
 
     fn draw(&mut self, drawn: u32) -> [usize; MINIMUM] {
         self.sampler.next(drawn)
     }
 
-    fn models(&self, sample: &[usize; MINIMUM]) -> impl Iterator<Item = Matrix3<T>> + use<'a, T> {
-        let [first, second] = self.frames;
-        let sample = self.at(sample).map(|seen| seen.map(|s| (first.apply(s.first), second.apply(s.second))));
-        // By their places: the iterator of the vector itself can panic, as far as the compiler sees.
-        let candidates = sample.map(|normalised| seven_point(&normalised)).unwrap_or_default();
-        (0..candidates.len()).map_while(move |i| candidates.get(i).copied())
+    fn models(&self, sample: &[usize; MINIMUM]) -> Candidates<T> {
+        seven_point(&self.normalised(sample))
     }
 
     fn consider(&mut self, model: &Matrix3<T>, sample: &[usize; MINIMUM]) {
-        let Some(sample) = self.at(sample) else { return };
+        let sample = self.at(sample);
         let f = self.in_pixels(model);
         if !one_sense(&f, &sample) || !self.compare(&f) {
             return;

@@ -14,7 +14,7 @@ macro_rules! two_operands {
     ($(#[$doc:meta])* $name:ident: $($instruction:literal),*) => {
         $(#[$doc])*
         #[inline(always)]
-        fn $name(a: u32, b: u32) -> u32 {
+        pub(super) fn $name(a: u32, b: u32) -> u32 {
             let out;
             // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is
             // there. The marks of lanes are not said to be preserved.
@@ -36,77 +36,133 @@ two_operands!(
     min: "usub8 {out}, {a}, {b}", "sel {out}, {b}, {a}"
 );
 two_operands!(
-    /// The greater bytes, likewise.
+    /// The greater bytes: `sel` picks by the marks of the subtraction.
     max: "usub8 {out}, {a}, {b}", "sel {out}, {a}, {b}"
 );
 
-/// The bytes of `a` that are more than those of `least`, 0 for the others.
+two_operands!(
+    /// The halves of `a` and the bytes 0 and 2 of `b`.
+    plus_even: "uxtab16 {out}, {a}, {b}"
+);
+two_operands!(
+    /// The halves of `a` and the bytes 1 and 3 of `b`.
+    plus_odd: "uxtab16 {out}, {a}, {b}, ror #8"
+);
+
+/// The greater bytes and the lesser ones, from one subtraction.
 #[inline(always)]
-fn over(a: u32, least: u32) -> u32 {
-    let out;
-    // SAFETY: as above.
+fn max_min([a, b]: [u32; 2]) -> (u32, u32) {
+    let (greater, lesser);
+    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
     unsafe {
-        asm!("usub8 {out}, {least}, {a}", "sel {out}, {none}, {a}", out = out(reg) out, a = in(reg) a,
-            least = in(reg) least, none = in(reg) 0, options(pure, nomem, nostack));
+        asm!("usub8 {greater}, {a}, {b}", "sel {greater}, {a}, {b}", "sel {lesser}, {b}, {a}",
+            greater = out(reg) greater, lesser = out(reg) lesser, a = in(reg) a, b = in(reg) b,
+            options(pure, nomem, nostack));
+    }
+    (greater, lesser)
+}
+
+/// The bytes of `chosen` where those of `a` are more than those of `least`, 0 for the others.
+#[inline(always)]
+pub(super) fn where_more(a: u32, least: u32, chosen: u32) -> u32 {
+    let out;
+    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
+    unsafe {
+        asm!("usub8 {out}, {least}, {a}", "sel {out}, {none}, {chosen}", out = out(reg) out, a = in(reg) a,
+            least = in(reg) least, none = in(reg) 0, chosen = in(reg) chosen,
+            options(pure, nomem, nostack));
     }
     out
 }
 
-/// The scores of four pixels whose circles lie in these rows, from the first column on.
+/// The bytes of `chosen` where those of `a` are no more than those of `most`, 0 for the others.
+#[inline(always)]
+fn unless_more(a: u32, most: u32, chosen: u32) -> u32 {
+    let out;
+    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
+    unsafe {
+        asm!("usub8 {out}, {most}, {a}", "sel {out}, {chosen}, {none}", out = out(reg) out, a = in(reg) a,
+            most = in(reg) most, none = in(reg) 0, chosen = in(reg) chosen, options(pure, nomem, nostack));
+    }
+    out
+}
+
+/// Which of four pixels, whose circles lie in these rows from the first column on, may have nine neighbours in
+/// a row that are brighter by more than `least`: the bytes that are not 0. And which nine that are darker: 255,
+/// the others 0.
+#[inline(always)]
+pub(super) fn brighter_and_darker(rows: &[&[u8; COLUMNS]; 7], least: u32) -> [u32; 2] {
+    let centre = four(rows, (3, 3));
+    // Nine of sixteen in a row hold one of every two that lie opposite to each other.
+    let [(a, e), (b, f), (c, g), (d, h)] =
+        [0, 4, 2, 6].map(|i| max_min([i, i + 8].map(|i| on_circle(rows, i))));
+    let (brightest, darkest) = (min(min(a, b), min(c, d)), max(max(e, f), max(g, h)));
+    let brighter = difference(difference(brightest, centre), least);
+    [brighter, where_more(difference(centre, darkest), least, u32::MAX)]
+}
+
+/// The scores of four pixels, by how much their neighbours are brighter, or darker where all is `inverted`.
 ///
 /// What is asked of all sixteen differences to the pixel is asked of the circle itself, and the pixel is
 /// subtracted afterwards: the weakest of nine brighter ones is the least of nine.
 #[inline(always)]
-pub(super) fn scores_of_four(rows: &[&[u8; COLUMNS]; 7], threshold: u8) -> [u8; PIXELS] {
-    let four = |row: usize, column: usize| {
-        let bytes = rows.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk());
-        bytes.map_or(0, |bytes| u32::from_le_bytes(*bytes))
-    };
-    let on_circle = |i: usize| {
-        let (row, column) = CIRCLE[i & 15];
-        four(row, column)
-    };
-    let (centre, least) = (four(3, 3), u32::from(threshold) * 0x0101_0101);
-    // Nine of sixteen in a row hold one of every two that lie opposite to each other.
-    let [up, right, down, left] = [0, 4, 8, 12].map(on_circle);
-    let brightest = min(max(up, down), max(left, right));
-    let darkest = max(min(up, down), min(left, right));
-    let is_none = |differences: u32| difference(differences, least) == 0;
-    let (none_brighter, none_darker) =
-        (is_none(difference(brightest, centre)), is_none(difference(centre, darkest)));
-    if none_brighter && none_darker {
-        return [0; PIXELS];
-    }
-    let circle: [u32; 16] = core::array::from_fn(on_circle);
-    let mut scores = 0;
-    if !none_brighter {
-        scores = over(difference(best_of_nine(&circle, min, max), centre), least);
-    }
-    if !none_darker {
-        scores = max(scores, over(difference(centre, best_of_nine(&circle, max, min)), least));
-    }
-    scores.to_le_bytes()
+pub(super) fn scores_of_four(rows: &[&[u8; COLUMNS]; 7], least: u32, inverted: u32) -> u32 {
+    let nine = least_of_best_nine(|i| on_circle(rows, i) ^ inverted);
+    let more = difference(nine, four(rows, (3, 3)) ^ inverted);
+    where_more(more, least, more)
 }
 
-/// The best of all `worst` of nine in a row, around the circle, as [`super::fast`] says it.
+/// The neighbours of four pixels at one place of the circle.
 #[inline(always)]
-fn best_of_nine(circle: &[u32; 16], worst: fn(u32, u32) -> u32, best: fn(u32, u32) -> u32) -> u32 {
-    let value = |i: usize| circle[i & 15];
-    let twos: [u32; 8] = core::array::from_fn(|i| worst(value(2 * i + 1), value(2 * i + 2)));
-    let fours: [u32; 8] = core::array::from_fn(|i| worst(twos[i & 7], twos[(i + 1) & 7]));
-    let nine = |i: usize| {
-        let eight = worst(fours[i & 7], fours[(i + 2) & 7]);
-        worst(eight, best(value(2 * i), value(2 * i + 9)))
+fn on_circle(rows: &[&[u8; COLUMNS]; 7], i: usize) -> u32 {
+    four(rows, CIRCLE[i & 15])
+}
+
+/// Four pixels from a row and a column on.
+#[inline(always)]
+fn four<const N: usize>(rows: &[&[u8; N]], (row, column): (usize, usize)) -> u32 {
+    let bytes = rows.get(row).and_then(|row| row.get(column..)).and_then(|row| row.first_chunk());
+    bytes.map_or(0, |bytes| u32::from_le_bytes(*bytes))
+}
+
+/// The greatest of all minima of nine in a row, around the circle.
+///
+/// Of the eight nines that begin at `i` to `i + 7`, four hold the four before `i + 7` and four the four after
+/// `i + 8`, and all hold these two.
+#[inline(always)]
+fn least_of_best_nine(value: impl Fn(usize) -> u32) -> u32 {
+    let twos: [u32; 8] = core::array::from_fn(|i| min(value(2 * i + 1), value(2 * i + 2)));
+    let two = |i: usize| twos[(i / 2) & 7];
+    // Of four nines that begin at `i` to `i + 3`, what not all of them hold.
+    let four = |i: usize| {
+        let first = min(two(i + 1), max(value(i), value(i + 9)));
+        max(first, min(two(i + 9), max(value(i + 2), value(i + 11))))
     };
-    (1..8).fold(nine(0), |all, i| best(all, nine(i)))
+    let eight = |i: usize| {
+        let first = min(four(i), min(two(i + 3), two(i + 5)));
+        let second = min(four(i + 4), min(two(i + 9), two(i + 11)));
+        min(max(first, second), two(i + 7))
+    };
+    max(eight(0), eight(8))
+}
+
+/// Which of four scores are local maxima, for [`super::maxima`].
+#[inline(always)]
+pub(super) fn maxima_of_four(rows: [&[u8; PIXELS + 2]; 3]) -> u32 {
+    let four = |row: usize, column: usize| four(&rows, (row, column));
+    let here = four(1, 1);
+    let before = max(max(four(0, 0), four(0, 1)), max(four(0, 2), four(1, 0)));
+    let after = max(max(four(2, 0), four(2, 1)), max(four(2, 2), four(1, 2)));
+    unless_more(after, here, difference(here, before))
 }
 
 /// Sums of four columns of five rows by the weights of [`super::binomial`]: those of the first and the third
 /// in the halves of a word, and those of the other two.
 #[inline(always)]
 pub(super) fn column_sums(rows: [&[u8; PIXELS]; 5]) -> [u32; 2] {
-    let words = rows.map(|row| u32::from_le_bytes(*row));
-    [0, 8].map(|shift| weighted(words.map(|word| word >> shift & 0x00ff_00ff)))
+    let [a, b, c, d, e] = rows.map(|row| u32::from_le_bytes(*row));
+    let sums = |plus: fn(u32, u32) -> u32| sum(plus(plus(0, a), e), plus(plus(0, b), d), plus(0, c));
+    [sums(plus_even), sums(plus_odd)]
 }
 
 /// Four smoothed pixels, from the sums of their columns and of the two on either side.
@@ -122,6 +178,11 @@ pub(super) fn smooth_four([[a, b], [c, d]]: [[u32; 2]; 2]) -> [u8; PIXELS] {
 /// The weighted sums in the halves of words, at most 65280.
 #[inline(always)]
 fn weighted([a, b, c, d, e]: [u32; 5]) -> u32 {
-    let outer = a.wrapping_add(e).wrapping_add(b.wrapping_add(d) << 2);
-    outer.wrapping_add(c << 1).wrapping_add(c << 2)
+    sum(a.wrapping_add(e), b.wrapping_add(d), c)
+}
+
+/// The weighted sums of the outer two, the inner two and the middle one.
+#[inline(always)]
+fn sum(outer: u32, inner: u32, middle: u32) -> u32 {
+    outer.wrapping_add(inner.wrapping_add(middle) << 2).wrapping_add(middle << 1)
 }

@@ -29,26 +29,26 @@ pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
 #[cfg(stereopsis_dsp)]
 fn in_fours(rows: &[&[u8]; 5], width: usize, out: &mut [u8]) {
     use super::armv7em::{PIXELS, column_sums, smooth_four};
-    let sums = |begin: usize| {
-        let [Some(a), Some(b), Some(c), Some(d), Some(e)] =
-            rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk::<PIXELS>()))
-        else {
-            return [0; 2];
-        };
-        column_sums([a, b, c, d, e])
+    use super::fast::part;
+    // All of one length, which is asked for once.
+    let rows = rows.map(|row| row.get(..width));
+    let ([Some(a), Some(b), Some(c), Some(d), Some(e)], Some(out)) = (rows, out.get_mut(..width)) else {
+        return;
+    };
+    let sums = |begin: usize| column_sums([a, b, c, d, e].map(|row| part(row, begin)));
+    let mut write = |begin: usize, sums: [[u32; 2]; 2]| {
+        if let Some(four) = out.get_mut(begin + 2..begin + 6).and_then(|out| out.first_chunk_mut()) {
+            *four = smooth_four(sums);
+        }
     };
     let (mut begin, mut left) = (0, sums(0));
     while begin + 2 * PIXELS <= width {
         let right = sums(begin + PIXELS);
-        if let Some(four) = out.get_mut(begin + 2..).and_then(|out| out.first_chunk_mut()) {
-            *four = smooth_four([left, right]);
-        }
+        write(begin, [left, right]);
         (begin, left) = (begin + PIXELS, right);
     }
     let begin = width.saturating_sub(2 * PIXELS);
-    if let Some(four) = out.get_mut(begin + 2..).and_then(|out| out.first_chunk_mut()) {
-        *four = smooth_four([sums(begin), sums(begin + PIXELS)]);
-    }
+    write(begin, [sums(begin), sums(begin + PIXELS)]);
 }
 
 /// The weighted sum: 16 times the mean, so at most 4080 of bytes and 65280 of sums of bytes.

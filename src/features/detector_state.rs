@@ -1,6 +1,8 @@
 //! What becomes of a row's corners in a feature detector: found, described, given out.
 
+use super::fast::part;
 use super::grid::{self, CornerSlot};
+use super::maxima::{COLUMNS, maxima_of_four};
 use super::pattern::PATCH_RADIUS;
 use super::{Corner, Descriptor, Feature, FeatureConfig, Orientation, Patch, PatchOrientation, refine};
 use crate::imaging::RowRing;
@@ -61,12 +63,7 @@ impl FeatureDetectorState {
 
     /// The corners of a row into their cells: pixels that score more than the neighbours that come before
     /// them, and no less than those that come after.
-    pub(super) fn find(
-        &mut self,
-        row: usize,
-        [above, here, below]: [&[u8]; 3],
-        cells: &mut [&mut [CornerSlot]; 2],
-    ) {
+    pub(super) fn find(&mut self, row: usize, scores: [&[u8]; 3], cells: &mut [&mut [CornerSlot]; 2]) {
         let FeatureConfig { width, height, .. } = self.config;
         let (width, height) = (usize::from(width), usize::from(height));
         let (cell_px, per_cell) = self.cell();
@@ -74,20 +71,33 @@ impl FeatureDetectorState {
             return;
         }
         let Some(cells) = cells.get_mut(row / cell_px % 2) else { return };
-        let triples = above.windows(3).zip(here.windows(3)).zip(below.windows(3)).enumerate();
-        for (left, ((above, here), below)) in triples.skip(MARGIN - 1).take(width - 2 * MARGIN) {
-            let (&[a, b, c], &[d, score, e], &[f, g, h]) = (above, here, below) else { continue };
-            if score == 0 || score <= a.max(b).max(c).max(d) || score < e.max(f).max(g).max(h) {
-                continue;
+        // All of one length, which is asked for once.
+        let [Some(above), Some(here), Some(below)] = scores.map(|row| row.get(..width)) else { return };
+        let end = width - MARGIN;
+        let (mut corners, mut crowded_out, mut begin) = (0, 0, MARGIN);
+        while begin < end && begin + COLUMNS < width {
+            let parts = [above, here, below].map(|row| part(row, begin - 1));
+            let [_, here, _] = parts;
+            let mut maxima = maxima_of_four(parts);
+            while maxima != 0 {
+                let lane = maxima.trailing_zeros() / u8::BITS;
+                maxima &= !(0xff << (lane * u8::BITS));
+                let (lane, column) = (lane as usize, begin + lane as usize);
+                let score = here.get(1 + lane).copied().unwrap_or(0);
+                if column >= end {
+                    break;
+                }
+                let corner = Corner { column: column as u16, row: row as u16, score, ..Corner::NONE };
+                let first = column / cell_px * per_cell;
+                corners += 1;
+                if let Some(cell) = cells.get_mut(first..first + per_cell) {
+                    crowded_out += u32::from(grid::insert(cell, corner));
+                }
             }
-            let column = left + 1;
-            let corner = Corner { column: column as u16, row: row as u16, score, ..Corner::NONE };
-            let first = column / cell_px * per_cell;
-            self.counts.corners += 1;
-            if let Some(cell) = cells.get_mut(first..first + per_cell) {
-                self.counts.crowded_out += u32::from(grid::insert(cell, corner));
-            }
+            begin += COLUMNS;
         }
+        self.counts.corners += corners;
+        self.counts.crowded_out += crowded_out;
     }
 
     /// Where a row's corners are, to a fraction of a pixel, and what they look like.
@@ -100,12 +110,18 @@ impl FeatureDetectorState {
         cells: &mut [&mut [CornerSlot]; 2],
     ) {
         let (cell_px, _) = self.cell();
-        let rows = smooth.around(row, row + PATCH_RADIUS as usize);
         let Some(cells) = cells.get_mut(row / cell_px % 2) else { return };
-        let waiting =
-            cells.iter_mut().filter(|slot| slot.corner.score > 0 && usize::from(slot.corner.row) == row);
-        for slot in waiting {
-            let Some(patch) = Patch::cut(&rows, slot.corner.column.into()) else { continue };
+        let is_waiting = |slot: &CornerSlot| slot.corner.score > 0 && usize::from(slot.corner.row) == row;
+        // The rest has its price, and in most rows of most pictures none waits.
+        if !cells.iter().any(is_waiting) {
+            return;
+        }
+        let rows = smooth.all(row.saturating_sub(PATCH_RADIUS as usize));
+        let mut patch = Patch::BLACK;
+        for slot in cells.iter_mut().filter(|slot| is_waiting(slot)) {
+            if patch.fill(&rows, slot.corner.column.into()).is_none() {
+                continue;
+            }
             let turn = match self.config.orientation {
                 Orientation::Upright => PatchOrientation::NONE,
                 Orientation::Centroid => patch.direction(),

@@ -14,11 +14,14 @@ use super::circle::CIRCLE;
 pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
     let width = rows.iter().fold(scores.len(), |least, row| least.min(row.len()));
     let Some(scores) = scores.get_mut(..width) else { return };
-    scores.fill(0);
     #[cfg(stereopsis_dsp)]
     if width >= super::armv7em::COLUMNS {
+        if let [a, b, c, .., d, e, f] = scores {
+            (*a, *b, *c, *d, *e, *f) = (0, 0, 0, 0, 0, 0);
+        }
         return scores_in_fours(rows, threshold, scores);
     }
+    scores.fill(0);
     let [a, b, c, d, e, f, g] = rows.map(|row| row.get(..width).unwrap_or(&[]).windows(7));
     let squares = a.zip(b).zip(c).zip(d).zip(e).zip(f).zip(g);
     for (score, ((((((a, b), c), d), e), f), g)) in scores.iter_mut().skip(3).zip(squares) {
@@ -27,22 +30,63 @@ pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
 }
 
 /// [`fast_scores`] of rows of one length four pixels at a time, the last four moved back to end with the row.
+///
+/// Where neighbours may be darker, all brightnesses are inverted: no pixel has nine of each.
 #[cfg(stereopsis_dsp)]
 fn scores_in_fours(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
-    use super::armv7em::{COLUMNS, PIXELS, scores_of_four};
-    let last = scores.len().saturating_sub(COLUMNS);
-    let mut begin = 0;
-    loop {
-        let parts = rows.map(|row| row.get(begin..).and_then(|row| row.first_chunk()));
-        let [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f), Some(g)] = parts else { return };
-        if let Some(four) = scores.get_mut(begin + 3..).and_then(|scores| scores.first_chunk_mut()) {
-            *four = scores_of_four(&[a, b, c, d, e, f, g], threshold);
+    use super::armv7em::{COLUMNS, PIXELS, brighter_and_darker, max, scores_of_four};
+    let (width, least) = (scores.len(), u32::from(threshold) * 0x0101_0101);
+    let (mut begin, last) = (0, width.saturating_sub(COLUMNS));
+    while let Some(parts) = parts(rows, begin, width) {
+        let [brighter, darker] = brighter_and_darker(&parts, least);
+        let mut four = 0;
+        if brighter | darker != 0 {
+            four = scores_of_four(&parts, least, darker);
+            // Some on an edge may have nine of either kind.
+            if brighter & darker != 0 {
+                four = max(four, scores_again(rows, begin, width, least, [brighter, darker]));
+            }
+        }
+        if let Some(place) = scores.get_mut(begin + 3..begin + 7).and_then(|scores| scores.first_chunk_mut())
+        {
+            *place = four.to_le_bytes();
         }
         if begin >= last {
             return;
         }
         begin = last.min(begin + PIXELS);
     }
+}
+
+/// The scores of four pixels for a second time: seldom needed, and so the code for it is elsewhere.
+#[cfg(stereopsis_dsp)]
+#[cold]
+#[inline(never)]
+fn scores_again(
+    rows: &[&[u8]; 7],
+    begin: usize,
+    width: usize,
+    least: u32,
+    [brighter, darker]: [u32; 2],
+) -> u32 {
+    use super::armv7em::{scores_of_four, where_more};
+    let inverted = darker & !where_more(brighter, 0, u32::MAX);
+    parts(rows, begin, width).map_or(0, |parts| scores_of_four(&parts, least, inverted))
+}
+
+/// The columns of four pixels' circles in rows of `width`; `None` where they are not inside.
+#[cfg(stereopsis_dsp)]
+#[inline(always)]
+fn parts<'a, const N: usize>(rows: &[&'a [u8]; 7], begin: usize, width: usize) -> Option<[&'a [u8; N]; 7]> {
+    let end = begin + N;
+    (end <= width).then(|| rows.map(|row| part(row.get(..width).unwrap_or_default(), begin)))
+}
+
+/// The `N` samples of a row from `begin` on, which are inside. Where the caller has compared that, nothing is
+/// compared here.
+#[inline(always)]
+pub(super) fn part<const N: usize>(row: &[u8], begin: usize) -> &[u8; N] {
+    row.get(begin..begin + N).and_then(|part| part.first_chunk()).unwrap_or(&[0; N])
 }
 
 /// The score of the middle of a square.

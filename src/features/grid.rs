@@ -21,16 +21,15 @@ impl CornerSlot {
 /// Puts a corner into a cell: into a free slot or the place of the weakest corner there, of equals the last
 /// that came, if the new one is stronger. Whether a corner had to stay outside or leave.
 pub(super) fn insert(cell: &mut [CornerSlot], corner: Corner) -> bool {
-    // Corners come in reading order: of equals the one that is farther on is the later one.
-    let weakest = cell.iter_mut().min_by_key(|slot| order(&slot.corner));
-    match weakest {
-        Some(slot) if slot.corner.score < corner.score => {
-            let crowded = !slot.is_free();
-            slot.corner = corner;
-            crowded
-        }
-        _ => true,
+    // Most corners are no match for those that are there, which their scores say.
+    if cell.iter().all(|slot| slot.corner.score >= corner.score) {
+        return true;
     }
+    // Corners come in reading order: of equals the one that is farther on is the later one.
+    let Some(weakest) = cell.iter_mut().min_by_key(|slot| order(&slot.corner)) else { return true };
+    let crowded = !weakest.is_free();
+    weakest.corner = corner;
+    crowded
 }
 
 /// Takes the strongest corner out of a cell, of equals the first that came.
@@ -40,6 +39,7 @@ pub(super) fn take_strongest(cell: &mut [CornerSlot]) -> Option<CornerSlot> {
 }
 
 /// Stronger is more, and of equals the one that comes first in reading order.
-fn order(corner: &Corner) -> (u8, core::cmp::Reverse<(u16, u16)>) {
-    (corner.score, core::cmp::Reverse((corner.row, corner.column)))
+fn order(corner: &Corner) -> u64 {
+    let place = u32::from(corner.row) << 16 | u32::from(corner.column);
+    u64::from(corner.score) << 32 | u64::from(!place)
 }

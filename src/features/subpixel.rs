@@ -43,22 +43,41 @@ pub fn refine(patch: &Patch) -> [i8; 2] {
 /// determinants, which are never negative, below 2^39.
 fn responses(patch: &Patch) -> [[i64; RESPONSES]; RESPONSES] {
     let reach = (GRADIENTS / 2) as i32;
-    let products: [[[i32; 3]; GRADIENTS]; GRADIENTS] = core::array::from_fn(|y| {
-        core::array::from_fn(|x| {
-            let (x, y) = (x as i32 - reach, y as i32 - reach);
-            let pixel = |x: i32, y: i32| i32::from(patch.at((x, y)));
-            let (right, down) = (pixel(x + 1, y) - pixel(x - 1, y), pixel(x, y + 1) - pixel(x, y - 1));
-            [right * right, right * down, down * down]
-        })
+    // Along the rows first: each of these sums is in three sums of nine.
+    let rows: [[[i32; 3]; RESPONSES]; GRADIENTS] = core::array::from_fn(|y| {
+        let row = |y: i32| patch.row::<{ GRADIENTS + 2 }>(y).map(i32::from);
+        let y = y as i32 - reach;
+        let [above, here, below] = [row(y - 1), row(y), row(y + 1)];
+        let mut products = [[0; 3]; GRADIENTS];
+        let columns = here.windows(3).zip(above.iter().zip(&below).skip(1));
+        for (product, (across, (above, below))) in products.iter_mut().zip(columns) {
+            let &[left, _, right] = across else { continue };
+            let (right, down) = (right - left, below - above);
+            *product = [right * right, right * down, down * down];
+        }
+        let mut sums = [[0; 3]; RESPONSES];
+        for (sum, three) in sums.iter_mut().zip(products.windows(3)) {
+            if let [a, b, c] = three {
+                *sum = sum_of([a, b, c]);
+            }
+        }
+        sums
     });
-    core::array::from_fn(|y| {
-        core::array::from_fn(|x| {
-            let around = products.iter().skip(y).take(3).flat_map(|row| row.iter().skip(x).take(3));
-            let [xx, xy, yy] =
-                around.fold([0; 3], |sum, one| [sum[0] + one[0], sum[1] + one[1], sum[2] + one[2]]);
-            i64::from(xx) * i64::from(yy) - i64::from(xy) * i64::from(xy)
-        })
-    })
+    let mut responses = [[0; RESPONSES]; RESPONSES];
+    for (responses, three) in responses.iter_mut().zip(rows.windows(3)) {
+        let [above, here, below] = three else { continue };
+        for (response, ((a, b), c)) in responses.iter_mut().zip(above.iter().zip(here).zip(below)) {
+            let [xx, xy, yy] = sum_of([a, b, c]).map(i64::from);
+            *response = xx * yy - xy * xy;
+        }
+    }
+    responses
+}
+
+/// The sum of three sums of products.
+#[inline(always)]
+fn sum_of([[a, b, c], [d, e, f], [g, h, i]]: [&[i32; 3]; 3]) -> [i32; 3] {
+    [a + d + g, b + e + h, c + f + i]
 }
 
 /// The top of the quadratic surface through nine values, to the right of the middle one and down, in steps of
@@ -69,12 +88,13 @@ fn responses(patch: &Patch) -> [[i64; RESPONSES]; RESPONSES] {
 fn top(square: &[[i64; NEAREST]; NEAREST]) -> [i64; 2] {
     let most = square.as_flattened().iter().fold(0, |most, &value| value.max(most));
     let shift = (i64::BITS - most.leading_zeros()).saturating_sub(BITS);
-    let [[a, b, c], [d, e, f], [g, h, i]] = square.map(|row| row.map(|value| value >> shift));
+    let [[a, b, c], [d, e, f], [g, h, i]] = square.map(|row| row.map(|value| (value >> shift) as i32));
     let columns = [a + 2 * d + g, b + 2 * e + h, c + 2 * f + i];
     let rows = [a + 2 * b + c, d + 2 * e + f, g + 2 * h + i];
-    let slope = |[before, _, after]: [i64; 3]| after - before;
-    let bend = |[before, here, after]: [i64; 3]| after - 2 * here + before;
-    let (x, y, xx, yy, xy) = (slope(columns), slope(rows), bend(columns), bend(rows), i - g - c + a);
+    let slope = |[before, _, after]: [i32; 3]| i64::from(after - before);
+    let bend = |[before, here, after]: [i32; 3]| i64::from(after - 2 * here + before);
+    let (x, y, xx, yy) = (slope(columns), slope(rows), bend(columns), bend(rows));
+    let xy = i64::from(i - g - c + a);
     let determinant = xx * yy - xy * xy;
     if xx >= 0 || determinant <= 0 {
         return [0, 0];

@@ -28,4 +28,15 @@ impl<'a, T, const N: usize> RowRing<'a, T, N> {
             self.slots.get(begin..begin + self.width).unwrap_or_default()
         })
     }
+
+    /// All rows of the ring, from row `oldest` on.
+    pub fn all(&self, oldest: usize) -> [&[T]; N] {
+        // One division for all.
+        let mut slot = oldest % N;
+        core::array::from_fn(|_| {
+            let begin = slot * self.width;
+            slot = if slot + 1 < N { slot + 1 } else { 0 };
+            self.slots.get(begin..begin + self.width).unwrap_or_default()
+        })
+    }
 }

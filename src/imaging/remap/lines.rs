@@ -157,7 +157,8 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         let cell = 1 << self.table.shift();
         let mut segments = self.table.segments(row, self.table.is_whole(row));
         valid.fill(1);
-        for ((out, valid), segment) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)).zip(&mut segments) {
+        for (out, valid) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)) {
+            let Some(segment) = segments.step() else { break };
             match segment.part {
                 Part::All => band.segment::<false>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid),
                 Part::Some => {

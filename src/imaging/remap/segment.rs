@@ -241,11 +241,10 @@ impl<'a> Segments<'a> {
     }
 }
 
-impl Iterator for Segments<'_> {
-    type Item = Segment;
-
-    #[inline]
-    fn next(&mut self) -> Option<Segment> {
+impl Segments<'_> {
+    /// The next segment, as [`Iterator::next`] gives it.
+    #[inline(always)]
+    pub fn step(&mut self) -> Option<Segment> {
         self.left = self.left.checked_sub(1)?;
         let [a, b, c] = self.last;
         let d = self.node();
@@ -259,6 +258,15 @@ impl Iterator for Segments<'_> {
             false => self.part(&column, &row),
         };
         Some(Segment { column, row, part })
+    }
+}
+
+impl Iterator for Segments<'_> {
+    type Item = Segment;
+
+    #[inline(never)]
+    fn next(&mut self) -> Option<Segment> {
+        self.step()
     }
 }
 

@@ -87,9 +87,9 @@ fn unless_more(a: u32, most: u32, chosen: u32) -> u32 {
     out
 }
 
-/// Which of four pixels, whose circles lie in these rows from the first column on, may have nine neighbours in
-/// a row that are brighter by more than `least`: the bytes that are not 0. And which nine that are darker: 255,
-/// the others 0.
+/// Which of four pixels, whose circles lie in these rows from the first column on, may have nine neighbours
+/// in a row that are brighter by more than `least`: the bytes that are not 0. And which ones may have nine
+/// that are darker: 255, the others 0.
 #[inline(always)]
 pub(super) fn brighter_and_darker(rows: &[&[u8; COLUMNS]; 7], least: u32) -> [u32; 2] {
     let centre = four(rows, (3, 3));
@@ -127,8 +127,8 @@ fn four<const N: usize>(rows: &[&[u8; N]], (row, column): (usize, usize)) -> u32
 
 /// The greatest of all minima of nine in a row, around the circle.
 ///
-/// Of the eight nines that begin at `i` to `i + 7`, four hold the four before `i + 7` and four the four after
-/// `i + 8`, and all hold these two.
+/// Of the eight nines that begin at `i` to `i + 7`, the first four hold the four neighbours before `i + 7`,
+/// the others the four after `i + 8`, and all hold these two.
 #[inline(always)]
 fn least_of_best_nine(value: impl Fn(usize) -> u32) -> u32 {
     let twos: [u32; 8] = core::array::from_fn(|i| min(value(2 * i + 1), value(2 * i + 2)));

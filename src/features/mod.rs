@@ -5,7 +5,7 @@
 //!
 //! 1. [`Downsample`]: ever smaller pictures, for scenes that come nearer.
 //! 2. [`FeatureDetector`]: lines to features, in a band of lines. In it, in running order: [`binomial5_row`];
-//!    [`fast_scores`], the segment test; `maxima` of them as [`Corner`]s; `grid`, the strongest in every cell;
+//!    [`fast_scores`], the segment test; its `maxima` as [`Corner`]s; `grid`, the strongest in every cell;
 //!    [`Patch`], what is around them; [`refine()`], where they are; [`Descriptor`], what they look like,
 //!    turned by a [`PatchOrientation`]; [`PATTERN`].
 //! 3. [`FeatureMatcher`]: all features of one picture with all of another, as a [`MatchConfig`] admits.

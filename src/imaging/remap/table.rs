@@ -1,7 +1,8 @@
 //! Remap table: a warp sampled on a coarse lattice, interpolated in integers.
 
 use super::RemapTableError;
-use super::segment::{BITS, Cell, Lattice, Part, Segments};
+use super::segment::{BITS, Cell, Part};
+use super::segments::{Lattice, Segments};
 use crate::geometry::{Real, camera::ImageSize, rectify::Warp};
 use nalgebra::Point2;
 

@@ -29,7 +29,7 @@ pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
 #[cfg(stereopsis_dsp)]
 fn in_fours(rows: &[&[u8]; 5], width: usize, out: &mut [u8]) {
     use super::armv7em::{PIXELS, column_sums, smooth_four};
-    use super::fast::part;
+    use crate::imaging::part;
     // All of one length, which is asked for once.
     let rows = rows.map(|row| row.get(..width));
     let ([Some(a), Some(b), Some(c), Some(d), Some(e)], Some(out)) = (rows, out.get_mut(..width)) else {

@@ -1,11 +1,10 @@
 //! What becomes of a row's corners in a feature detector: found, described, given out.
 
-use super::fast::part;
 use super::grid::{self, CornerSlot};
 use super::maxima::{COLUMNS, maxima_of_four};
 use super::pattern::PATCH_RADIUS;
 use super::{Corner, Descriptor, Feature, FeatureConfig, Orientation, Patch, PatchOrientation, refine};
-use crate::imaging::RowRing;
+use crate::imaging::{RowRing, part};
 use core::num::NonZero;
 
 /// Lines that the smoothing of a row waits for.

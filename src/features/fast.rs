@@ -5,6 +5,8 @@
 //! same way for all of them.
 
 use super::circle::CIRCLE;
+#[cfg(stereopsis_dsp)]
+use crate::imaging::part;
 
 /// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the
 /// weakest of nine neighbours in a row differs from the pixel, all to one side, for the best such nine; 0
@@ -80,13 +82,6 @@ fn scores_again(
 fn parts<'a, const N: usize>(rows: &[&'a [u8]; 7], begin: usize, width: usize) -> Option<[&'a [u8; N]; 7]> {
     let end = begin + N;
     (end <= width).then(|| rows.map(|row| part(row.get(..width).unwrap_or_default(), begin)))
-}
-
-/// The `N` samples of a row from `begin` on, which are inside. Where the caller has compared that, nothing is
-/// compared here.
-#[inline(always)]
-pub(super) fn part<const N: usize>(row: &[u8], begin: usize) -> &[u8; N] {
-    row.get(begin..begin + N).and_then(|part| part.first_chunk()).unwrap_or(&[0; N])
 }
 
 /// The score of the middle of a square.

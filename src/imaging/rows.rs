@@ -40,3 +40,10 @@ impl<'a, T, const N: usize> RowRing<'a, T, N> {
         })
     }
 }
+
+/// The `N` samples of a row from `begin` on, which are inside. Where the caller has compared that, nothing is
+/// compared here.
+#[inline(always)]
+pub(crate) fn part<const N: usize>(row: &[u8], begin: usize) -> &[u8; N] {
+    row.get(begin..begin + N).and_then(|part| part.first_chunk()).unwrap_or(&[0; N])
+}

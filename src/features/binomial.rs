@@ -70,4 +70,30 @@ mod tests {
         // 160 x 6 x 4 / 256 and 160 x 6 x 6 / 256.
         assert_eq!(out, [7, 7, 15, 23, 15, 7, 7]);
     }
+
+    #[test]
+    fn pixels_are_the_weighted_sums_around_them() {
+        const WEIGHTS: [u32; 5] = [1, 4, 6, 4, 1];
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        for width in (1..=40).cycle().take(400) {
+            let rows: [[u8; 40]; 5] = core::array::from_fn(|_| core::array::from_fn(|_| random()));
+            let mut out = [7; 40];
+            binomial5_row(&rows.each_ref().map(|row| &row[..width]), &mut out[..width]);
+            for (x, &pixel) in out[..width].iter().enumerate() {
+                let sum =
+                    |row: &[u8; 40]| (0..5).map(|i| WEIGHTS[i] * u32::from(row[x + i - 2])).sum::<u32>();
+                let inside = x >= 2 && x + 2 < width;
+                let all = || rows.iter().zip(WEIGHTS).map(|(row, weight)| weight * sum(row)).sum::<u32>();
+                assert_eq!(
+                    u32::from(pixel),
+                    if inside { (all() + 128) / 256 } else { 7 },
+                    "{x} of {width}: {rows:?}"
+                );
+            }
+        }
+    }
 }

@@ -143,4 +143,44 @@ mod tests {
         fast_scores(&rows.each_ref().map(|row| &row[..]), 70, &mut scores);
         assert_eq!(scores, [0; 12]);
     }
+
+    /// The segment test by its definition: of all nine neighbours in a row, on either side.
+    fn naive(rows: &[&[u8]; 7], x: usize, threshold: u8) -> u8 {
+        let centre = i16::from(rows[3][x]);
+        let differences = CIRCLE.map(|(row, column)| i16::from(rows[row][x + column - 3]) - centre);
+        let weakest = |i: usize, sign: i16| (i..i + 9).map(|k| sign * differences[k % 16]).min();
+        let all = (0..16).flat_map(|i| [weakest(i, 1), weakest(i, -1)]).flatten();
+        all.max().filter(|score| *score > threshold.into()).map_or(0, |score| score as u8)
+    }
+
+    #[test]
+    fn scores_are_those_of_the_definition() {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        let mut corners = 0;
+        for width in (1..=40).cycle().take(1600) {
+            // Noise, noise on two levels, and extremes, of which many pixels have nine neighbours of a kind.
+            let kind = random() % 3;
+            let mut pixel = || match kind {
+                0 => random(),
+                1 => (random() & 1) * 100 + random() % 8,
+                _ => [0, 255, 254, 1][usize::from(random() & 3)],
+            };
+            let rows: [[u8; 40]; 7] = core::array::from_fn(|_| core::array::from_fn(|_| pixel()));
+            let rows = rows.each_ref().map(|row| &row[..width]);
+            let threshold = [0, 5, 90, 254, 255][usize::from(random() % 5)];
+            let mut scores = [7; 40];
+            fast_scores(&rows, threshold, &mut scores[..width]);
+            for (x, &score) in scores[..width].iter().enumerate() {
+                let inside = x >= 3 && x + 3 < width;
+                let expected = if inside { naive(&rows, x, threshold) } else { 0 };
+                assert_eq!(score, expected, "{x} of {width}, {threshold}: {rows:?}");
+                corners += u32::from(expected > 0);
+            }
+        }
+        assert!(corners > 1000, "{corners}");
+    }
 }

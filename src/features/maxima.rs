@@ -42,4 +42,29 @@ mod tests {
         let rows = [[0, 0, 0, 0, 0, 0], [0, 0, 0, 0, 0, 9], [0, 0, 0, 0, 0, 0]];
         assert_eq!(maxima_of_four(rows.each_ref()), 0);
     }
+
+    #[test]
+    fn maxima_are_those_of_the_definition() {
+        let mut state = 1u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 24) as u8
+        };
+        let mut found = 0;
+        for _ in 0..20_000 {
+            // Few levels have many equal neighbours.
+            let shift = [0, 5, 7][usize::from(random() % 3)];
+            let rows: [[u8; WITH_NEIGHBOURS]; 3] =
+                core::array::from_fn(|_| core::array::from_fn(|_| random() >> shift));
+            let marks = maxima_of_four(rows.each_ref()).to_le_bytes();
+            for (x, mark) in (1..).zip(marks) {
+                let [above, here, below] = rows.map(|row| [row[x - 1], row[x], row[x + 1]]);
+                let before = above.into_iter().chain([here[0]]).all(|score| score < here[1]);
+                let after = below.into_iter().chain([here[2]]).all(|score| score <= here[1]);
+                assert_eq!(mark != 0, before && after, "{x}: {rows:?}");
+                found += u32::from(mark != 0);
+            }
+        }
+        assert!(found > 5000, "{found}");
+    }
 }

@@ -1,11 +1,12 @@
-//! The kernels for Arm beside their naive twins, in emulators of programs: the vectors of 64 bits, and, in
-//! the assembler of 32 bits, the instructions that Cortex-M4, M7 and M33 have on four bytes.
+//! The kernels for Arm beside their naive twins, and the features of pictures beside their definitions, in
+//! emulators of programs: the vectors of 64 bits, and, in the assembler of 32 bits, the instructions that
+//! Cortex-M4, M7 and M33 have on four bytes.
 
 use crate::kernels;
 use crate::packages;
 use crate::parallel;
 use crate::setup;
-use crate::steps::{Outcome, run as run_command, target_dir};
+use crate::steps::{Outcome, cargo, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
 
@@ -64,13 +65,19 @@ pub fn set_up() -> Outcome {
 pub fn run() -> Outcome {
     set_up()?;
     let arms: Vec<_> = others().collect();
-    run_command(&mut tests(&arms, &["--no-run"]))?;
+    for tests in [kernels::emulated(), features()] {
+        run_command(&mut on(tests, &arms, &["--no-run"]))?;
+    }
     parallel::work(arms, |arm| arm.run()).map(drop)
 }
 
-/// Cargo with the tests that hold every kernel to the twins.
-fn tests(arms: &[Arm], arguments: &[&str]) -> Command {
-    let mut tests = kernels::emulated();
+/// Cargo with the crate's own tests of features.
+fn features() -> Command {
+    cargo(&["test", "--locked", "-p", "stereopsis", "--lib", "features"])
+}
+
+/// Cargo's tests on these processors.
+fn on(mut tests: Command, arms: &[Arm], arguments: &[&str]) -> Command {
     tests.args(arms.iter().flat_map(|arm| ["--target", arm.target])).args(arguments);
     for arm in arms {
         let variable =
@@ -91,7 +98,9 @@ impl Arm {
         // Each has a processor.
         let arguments: Vec<_> = ["--", "--test-threads", "1"].into_iter().chain(skip).collect();
         let started = Instant::now();
-        run_command(&mut tests(&[*self], &arguments))?;
+        for tests in [kernels::emulated(), features()] {
+            run_command(&mut on(tests, &[*self], &arguments))?;
+        }
         println!("{} took {:.1} s", self.name, started.elapsed().as_secs_f64());
         Ok(())
     }

@@ -5,7 +5,8 @@
 //! unlocked by `RUSTC_BOOTSTRAP`. The crate itself is the one that ships.
 
 use crate::parallel;
-use crate::steps::{Failure, Outcome, cargo, command, output_of, root, run as run_command, target_dir};
+use crate::setup;
+use crate::steps::{Failure, Outcome, cargo, command, root, run as run_command, target_dir};
 use clap::Args;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -64,12 +65,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 
 /// Builds the program of all targets.
 fn build() -> Outcome<PathBuf> {
-    let rustc = output_of(&mut command("rustc", &["-vV"]))?;
-    let host = rustc.lines().find_map(|line| line.strip_prefix("host: "));
-    let host = host.ok_or_else(|| Failure::new("rustc -vV names no host"))?;
+    let host = setup::host()?;
     let folder = root().join(target_dir()).join("fuzz");
     // A target beside the flags, so that build scripts and macros are built without them.
-    let mut build = cargo(&["build", "--locked", "--release", "--manifest-path", CAMPAIGN, "--target", host]);
+    let mut build =
+        cargo(&["build", "--locked", "--release", "--manifest-path", CAMPAIGN, "--target", &host]);
     build.env("CARGO_TARGET_DIR", &folder).env("RUSTFLAGS", FLAGS).env("RUSTC_BOOTSTRAP", "1");
     run_command(&mut build)?;
     Ok(folder.join(host).join("release/campaign").with_extension(std::env::consts::EXE_EXTENSION))

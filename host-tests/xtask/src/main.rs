@@ -110,7 +110,7 @@ enum Chore {
         #[arg(long)]
         check: bool,
     },
-    /// Tests the C interface alone: header, sanitizers, two boards in QEMU.
+    /// Tests the C interface alone: header, sanitizers, every method on four boards in QEMU.
     C,
     /// Checks the core for all targets and with every feature.
     Cross,

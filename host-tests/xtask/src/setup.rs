@@ -125,6 +125,13 @@ fn toolchain(version: &str) -> Outcome {
     ))
 }
 
+/// The target of this machine's own programs.
+pub fn host() -> Outcome<String> {
+    let rustc = output_of(&mut command("rustc", &["-vV"]))?;
+    let host = rustc.lines().find_map(|line| line.strip_prefix("host: "));
+    host.map(str::to_owned).ok_or_else(|| Failure::new("rustc -vV names no host"))
+}
+
 /// The workspace's rust-version with its patch number, as toolchains are named.
 pub fn rust_version() -> Outcome<String> {
     let manifest = fs::read_to_string(root().join("Cargo.toml"))

@@ -5,7 +5,7 @@
 //! same way for all of them.
 
 use super::circle::CIRCLE;
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_simd))]
 use crate::imaging::part;
 
 /// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the
@@ -22,6 +22,13 @@ pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
             (*a, *b, *c, *d, *e, *f) = (0, 0, 0, 0, 0, 0);
         }
         return scores_in_fours(rows, threshold, scores);
+    }
+    #[cfg(stereopsis_simd)]
+    if width >= SQUARES {
+        if let [a, b, c, .., d, e, f] = scores {
+            (*a, *b, *c, *d, *e, *f) = (0, 0, 0, 0, 0, 0);
+        }
+        return scores_in_lanes(rows, threshold, scores);
     }
     scores.fill(0);
     let [a, b, c, d, e, f, g] = rows.map(|row| row.get(..width).unwrap_or(&[]).windows(7));
@@ -76,12 +83,85 @@ fn scores_again(
     parts(rows, begin, width).map_or(0, |parts| scores_of_four(&parts, least, inverted))
 }
 
-/// The columns of four pixels' circles in rows of `width`; `None` where they are not inside.
-#[cfg(stereopsis_dsp)]
+/// The columns of some pixels' circles in rows of `width`; `None` where they are not inside.
+#[cfg(any(stereopsis_dsp, stereopsis_simd))]
 #[inline(always)]
 fn parts<'a, const N: usize>(rows: &[&'a [u8]; 7], begin: usize, width: usize) -> Option<[&'a [u8; N]; 7]> {
     let end = begin + N;
     (end <= width).then(|| rows.map(|row| part(row.get(..width).unwrap_or_default(), begin)))
+}
+
+/// Pixels side by side in a vector, and the columns of their circles.
+#[cfg(stereopsis_simd)]
+const LANES: usize = 16;
+#[cfg(stereopsis_simd)]
+const SQUARES: usize = LANES + 6;
+
+/// [`fast_scores`] of rows of one length by vectors, the last pixels moved back to end with the row.
+#[cfg(stereopsis_simd)]
+fn scores_in_lanes(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
+    let width = scores.len();
+    let (mut begin, last) = (0, width.saturating_sub(SQUARES));
+    while let Some(parts) = parts(rows, begin, width) {
+        let lanes = scores_of_lanes(&parts, threshold);
+        if let Some(place) = scores.get_mut(begin + 3..).and_then(|scores| scores.first_chunk_mut()) {
+            *place = lanes;
+        }
+        if begin >= last {
+            return;
+        }
+        begin = last.min(begin + LANES);
+    }
+}
+
+/// The scores of the middles of squares side by side, as [`score_of`] has them.
+#[cfg(stereopsis_simd)]
+#[inline(always)]
+fn scores_of_lanes(parts: &[&[u8; SQUARES]; 7], threshold: u8) -> [u8; LANES] {
+    use core::array::from_fn;
+    let min = |a: &[u8; LANES], b: &[u8; LANES]| from_fn(|x| a[x].min(b[x]));
+    let max = |a: &[u8; LANES], b: &[u8; LANES]| from_fn(|x| a[x].max(b[x]));
+    let centre: &[u8; LANES] = part(parts[3], 3);
+    let ring = CIRCLE.map(|(row, column)| part::<LANES>(parts[row % 7], column));
+    let value = |i: usize| ring[i & 15];
+    let pairs: [[_; 2]; 4] = from_fn(|i| {
+        let (a, b) = (value(2 * i), value(2 * i + 8));
+        [max(a, b), min(a, b)]
+    });
+    let [brightest, darkest]: [[u8; LANES]; 2] = [
+        pairs.iter().fold([u8::MAX; LANES], |least, [brighter, _]| min(&least, brighter)),
+        pairs.iter().fold([0; LANES], |most, [_, darker]| max(&most, darker)),
+    ];
+    let above = |a: u8, b: u8| a.saturating_sub(b);
+    let most = (0..LANES).fold(0, |most, x| {
+        above(brightest[x], centre[x]).max(above(centre[x], darkest[x])).max(most)
+    });
+    if most <= threshold {
+        return [0; LANES];
+    }
+    let brighter = best_nine_of_lanes(value, min, max);
+    let darker = best_nine_of_lanes(value, max, min);
+    from_fn(|x| {
+        let score = above(brighter[x], centre[x]).max(above(centre[x], darker[x]));
+        if score > threshold { score } else { 0 }
+    })
+}
+
+/// [`weakest_of_best_nine`] in vectors: the best of the weakest, by what is the weaker of two and the better.
+#[cfg(stereopsis_simd)]
+#[inline(always)]
+fn best_nine_of_lanes<'a>(
+    value: impl Fn(usize) -> &'a [u8; LANES],
+    weaker: impl Fn(&[u8; LANES], &[u8; LANES]) -> [u8; LANES],
+    better: impl Fn(&[u8; LANES], &[u8; LANES]) -> [u8; LANES],
+) -> [u8; LANES] {
+    use core::array::from_fn;
+    let twos: [_; 8] = from_fn(|i| weaker(value(2 * i + 1), value(2 * i + 2)));
+    let fours: [_; 8] = from_fn(|i| weaker(&twos[i], &twos[(i + 1) & 7]));
+    let nine = |i: usize| {
+        weaker(&weaker(&fours[i & 7], &fours[(i + 2) & 7]), &better(value(2 * i), value(2 * i + 9)))
+    };
+    (1..8).fold(nine(0), |best, i| better(&best, &nine(i)))
 }
 
 /// The score of the middle of a square.

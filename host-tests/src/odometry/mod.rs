@@ -2,7 +2,8 @@
 //!
 //! * [`sequence`]: the frames of a folder, of one camera or of two.
 //! * `prepared`: what of a frame does not depend on those before it.
-//! * [`run`]: frames in, a [`trajectory`] out, with what is known of every pose.
+//! * [`run`]: frames in, a [`trajectory`] out, with what is known of every pose. `smoother`: the last views
+//!   adjusted together.
 //! * [`poses`]: trajectories as KITTI's files have them. [`error`]: how far they are off. [`picture`]: drawn.
 
 pub mod error;
@@ -11,4 +12,5 @@ pub mod poses;
 mod prepared;
 pub mod run;
 pub mod sequence;
+mod smoother;
 pub mod trajectory;

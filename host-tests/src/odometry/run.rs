@@ -1,15 +1,18 @@
 //! A sequence through the core's odometry.
 
 use super::prepared::Prepared;
+pub use super::smoother::{MOST_VIEWS, VIEWS};
+use super::smoother::{Told, smooth};
 use super::trajectory::Trajectory;
 use crate::correspond::CorrespondError;
 use image::GrayImage;
-use std::sync::mpsc::{Receiver, sync_channel};
-use stereopsis::geometry::camera::{Camera, Pose, RectifiedRig};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
+use std::thread::ScopedJoinHandle;
+use stereopsis::geometry::camera::{Camera, RectifiedRig};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
-    Frame, MonocularOdometry, OdometryConfig, OdometryError, OdometryRig, OdometryRigError, Refinement,
-    RefinementConfig, RigEstimate, State, Step, StereoOdometry,
+    Frame, MonocularOdometry, ObservedPoint, OdometryConfig, OdometryError, OdometryRigError, RigEstimate,
+    Step, StereoOdometry,
 };
 
 /// Points that are followed at most.
@@ -71,7 +74,8 @@ impl Default for RunConfig {
 }
 
 /// Takes frames, left and right, until there is none, and says where the camera stood in each. `told` hears
-/// of every frame. The next frames are read, and their features found, by a thread of their own.
+/// of every frame. Three threads share the work: one reads the next frames and finds their features, one
+/// follows them, and one adjusts the last views together, which the second does not wait for.
 pub fn run<E, I>(
     rig: &Rig,
     frames: I,
@@ -91,17 +95,19 @@ where
         };
         let thread = || std::thread::Builder::new().stack_size(STACK);
         thread().spawn_scoped(scope, read).map_err(RunError::Thread)?;
-        let work = move || follow(rig, receiver, config, told);
-        let work = thread().spawn_scoped(scope, work).map_err(RunError::Thread)?;
-        work.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+        let (to_smoother, steps) = sync_channel(AHEAD);
+        let follow = move || follow(rig, receiver, config.corrects_rig, told, &to_smoother);
+        let following = thread().spawn_scoped(scope, follow).map_err(RunError::Thread)?;
+        let smooth = move || smooth(rig, config.views, steps);
+        let smoothing = thread().spawn_scoped(scope, smooth).map_err(RunError::Thread)?;
+        joined(following)?;
+        Ok(joined(smoothing)?)
     })
 }
 
-/// Views that are adjusted together at most.
-pub const MOST_VIEWS: usize = 12;
-/// And when nobody says how many.
-pub const VIEWS: usize = 8;
-type Refined = Refinement<f64, MOST_VIEWS, { 2 * POINTS }, { 4 * POINTS * MOST_VIEWS }>;
+fn joined<T>(thread: ScopedJoinHandle<'_, T>) -> T {
+    thread.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic))
+}
 
 /// The odometry of either kind.
 enum Either {
@@ -133,6 +139,13 @@ impl Either {
         }
     }
 
+    fn observed_points(&self) -> Vec<ObservedPoint<f64>> {
+        match self {
+            Self::Stereo(odometry) => odometry.observed_points().collect(),
+            Self::Mono(odometry) => odometry.observed_points().collect(),
+        }
+    }
+
     /// Lengths in metres, or in first baselines.
     fn step(&mut self, frame: &Frame<'_>) -> Result<Step<f64>, OdometryError> {
         match self {
@@ -142,139 +155,77 @@ impl Either {
     }
 }
 
-/// The last views adjusted together, and which frames they are.
-struct Smoother {
-    refinement: Box<Refined>,
-    frames: Vec<usize>,
-}
-
-impl Smoother {
-    /// `None` of fewer than two views.
-    fn start(rig: &Rig, views: usize) -> Result<Option<Self>, OdometryRigError> {
-        if views < 2 {
-            return Ok(None);
-        }
-        let rig = match rig {
-            Rig::Stereo(rig) => OdometryRig::stereo(rig)?,
-            Rig::Mono(camera) => OdometryRig::one(*camera),
-        };
-        let mut refinement = Box::<Refined>::default();
-        refinement.start(&rig, RefinementConfig::new(views));
-        Ok(Some(Self { refinement, frames: Vec::new() }))
-    }
-
-    /// Takes the trajectory's last frame, and makes it and those before it better.
-    fn take(&mut self, odometry: &Either, trajectory: &mut Trajectory) {
-        let Some((step, last)) = trajectory.steps.last().zip(trajectory.steps.len().checked_sub(1)) else {
-            return;
-        };
-        match step.state {
-            State::Tracked | State::Found | State::Uncertain | State::LeftOnly => {}
-            // Nothing joins what was before and what comes.
-            State::First | State::Restarted => self.refinement.clear(),
-            // Where there may have been a step that is not known there is none to adjust.
-            State::RotationOnly | State::TranslationUnknown => return self.refinement.clear(),
-            _ => return,
-        }
-        let motion = match (self.refinement.poses(), self.frames.last()) {
-            ([], _) | (_, None) => Pose::identity(),
-            (_, Some(&before)) => trajectory.poses[before].inverse().then(&trajectory.poses[last]),
-        };
-        let adjusted = match odometry {
-            Either::Stereo(odometry) => self.refinement.push(&motion, odometry.observed_points()),
-            Either::Mono(odometry) => self.refinement.push(&motion, odometry.observed_points()),
-        };
-        self.frames.push(last);
-        // What cannot be adjusted stays as it was told.
-        if !matches!(adjusted, Ok(Some(_))) {
-            return;
-        }
-        let poses = self.refinement.poses();
-        let frames = &self.frames[self.frames.len() - poses.len()..];
-        let base = trajectory.poses[frames[0]];
-        for (pair, refined) in frames.windows(2).zip(&poses[1..]) {
-            trajectory.refine(pair[0], pair[1], base.then(refined));
-        }
-    }
-}
-
+/// Follows the frames, and hands on what is told of each.
 fn follow<E: std::error::Error>(
     rig: &Rig,
     frames: Receiver<Result<Prepared, RunError<E>>>,
-    config: RunConfig,
+    corrects_rig: bool,
     told: impl Fn(&Step<f64>),
-) -> Result<Trajectory, RunError<E>> {
-    let mut begun: Option<Run> = None;
+    sender: &SyncSender<Told>,
+) -> Result<(), RunError<E>> {
+    let mut begun: Option<Follower> = None;
     let mut first = Vec::new();
     for frame in frames {
         let frame = frame?;
-        let run = match &mut begun {
-            Some(run) => run,
-            begun @ None => begun.insert(Run::start(rig, config, &frame.left)?),
+        let follower = match &mut begun {
+            Some(follower) => follower,
+            begun @ None => begun.insert(Follower::start(rig, corrects_rig, &frame.left, sender)?),
         };
-        let step = run.take(&frame)?;
-        told(&step);
-        if run.has_corrected {
+        told(&follower.take(&frame)?);
+        if follower.has_corrected {
             continue;
         }
         first.push(frame);
         if first.len() >= MOST_AGAIN {
-            run.again(rig, config, first.drain(..))?;
+            follower.again(first.drain(..))?;
         }
     }
-    let Some(mut run) = begun else { return Ok(Trajectory::default()) };
-    if !run.has_corrected {
-        run.again(rig, config, first.drain(..))?;
+    match begun {
+        Some(mut follower) if !follower.has_corrected => follower.again(first.drain(..)),
+        _ => Ok(()),
     }
-    Ok(run.trajectory)
 }
 
 /// Frames that are gone through again at most: by all of them a correction is more exact than by those that
 /// it took to be sure.
 const MOST_AGAIN: usize = 64;
 
-/// A run under way.
-struct Run {
+/// An odometry under way.
+struct Follower<'a> {
     odometry: Either,
-    smoother: Option<Smoother>,
-    trajectory: Trajectory,
+    sender: &'a SyncSender<Told>,
+    is_corrected: bool,
     /// Whether the first frames have been gone through again, or need not be.
     has_corrected: bool,
 }
 
-impl Run {
-    fn start(rig: &Rig, run: RunConfig, left: &GrayImage) -> Result<Self, OdometryRigError> {
+impl<'a> Follower<'a> {
+    fn start(
+        rig: &Rig,
+        corrects_rig: bool,
+        left: &GrayImage,
+        sender: &'a SyncSender<Told>,
+    ) -> Result<Self, OdometryRigError> {
         // Pictures have at most 4096 columns and rows.
-        let RunConfig { views, corrects_rig } = run;
         let config = OdometryConfig { corrects_rig, ..OdometryConfig::new(left.width() as u16) };
-        Ok(Self {
-            odometry: Either::start(rig, config)?,
-            smoother: Smoother::start(rig, views)?,
-            trajectory: Trajectory::default(),
-            has_corrected: false,
-        })
-    }
-
-    fn is_corrected(&self) -> bool {
-        self.trajectory.rigs.last().is_some_and(|rig| rig.is_applied)
+        let odometry = Either::start(rig, config)?;
+        Ok(Self { odometry, sender, is_corrected: false, has_corrected: false })
     }
 
     /// Goes through the first frames again if the pair is corrected.
     fn again<E: std::error::Error>(
         &mut self,
-        rig: &Rig,
-        config: RunConfig,
         frames: impl Iterator<Item = Prepared>,
     ) -> Result<(), RunError<E>> {
         self.has_corrected = true;
-        if !self.is_corrected() {
+        if !self.is_corrected {
             return Ok(());
         }
         if let Either::Stereo(odometry) = &mut self.odometry {
             odometry.begin_again();
         }
-        self.smoother = Smoother::start(rig, config.views)?;
-        self.trajectory = Trajectory::default();
+        // What is told until nobody listens is of no use.
+        let _ = self.sender.send(Told::Again);
         for frame in frames {
             self.take(&frame)?;
         }
@@ -289,11 +240,9 @@ impl Run {
         let right = right.as_ref().map(|right| Picture::new(right.as_raw(), width, height)).transpose()?;
         let frame = Frame { left: Picture::new(left.as_raw(), width, height)?, right, features: corners };
         let step = self.odometry.step(&frame)?;
-        self.trajectory.push(step);
-        self.trajectory.rigs.extend(self.odometry.rig());
-        if let Some(smoother) = &mut self.smoother {
-            smoother.take(&self.odometry, &mut self.trajectory);
-        }
+        let rig = self.odometry.rig();
+        self.is_corrected = rig.is_some_and(|rig| rig.is_applied);
+        let _ = self.sender.send(Told::Step { step, rig, points: self.odometry.observed_points() });
         Ok(step)
     }
 }

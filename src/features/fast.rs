@@ -133,9 +133,8 @@ fn scores_of_lanes(parts: &[&[u8; SQUARES]; 7], threshold: u8) -> [u8; LANES] {
         pairs.iter().fold([0; LANES], |most, [_, darker]| max(&most, darker)),
     ];
     let above = |a: u8, b: u8| a.saturating_sub(b);
-    let most = (0..LANES).fold(0, |most, x| {
-        above(brightest[x], centre[x]).max(above(centre[x], darkest[x])).max(most)
-    });
+    let most = (0..LANES)
+        .fold(0, |most, x| above(brightest[x], centre[x]).max(above(centre[x], darkest[x])).max(most));
     if most <= threshold {
         return [0; LANES];
     }

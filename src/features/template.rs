@@ -17,6 +17,8 @@ const COUNT: usize = SIDE * SIDE;
 const STEPS: usize = 10;
 /// A step that is no more, px.
 const LITTLE: f32 = 0.01;
+/// The warp that changes nothing.
+const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The 11 x 11 pixels around a place of a picture, with a margin of one.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +26,12 @@ pub struct Template {
     pixels: [[u8; OUTER]; OUTER],
     /// How far the place lies to the right of the middle pixel's centre and below, px.
     part: [f32; 2],
+}
+
+/// A template's pixels without their mean, and their slopes to the right and down without theirs.
+struct Shape {
+    values: [f32; COUNT],
+    slopes: [[f32; COUNT]; 2],
 }
 
 /// Where a template was found.
@@ -72,6 +80,15 @@ error_text!(TemplateError {
     Self::TooFar => "the alignment went too far from its start",
 });
 
+/// The sum of pixels, and that of their squares.
+fn sums(pixels: impl Iterator<Item = i16>) -> (i32, i32) {
+    pixels.map(i32::from).map(|pixel| (pixel, pixel * pixel)).fold((0, 0), plus)
+}
+
+fn plus(a: (i32, i32), b: (i32, i32)) -> (i32, i32) {
+    (a.0 + b.0, a.1 + b.1)
+}
+
 impl Template {
     /// Pixels to either side that a template needs.
     pub const MARGIN: usize = REACH + 1;
@@ -109,40 +126,27 @@ impl Template {
         start: [f32; 2],
         farthest_px: f32,
     ) -> Result<TemplateMatch, TemplateError> {
-        let (values, slopes) = self.values_and_slopes();
-        let (mut xx, mut xy, mut yy, mut own) = (0.0, 0.0, 0.0, 0.0);
-        for (value, [x, y]) in values.iter().zip(&slopes) {
-            own += value * value;
-            xx += x * x;
-            xy += x * y;
-            yy += y * y;
-        }
+        let Shape { values, slopes: [right, down] } = self.shape();
+        let own = dot(&values, &values);
+        let (xx, xy, yy) = (dot(&right, &right), dot(&right, &down), dot(&down, &down));
         let determinant = xx * yy - xy * xy;
         // Along an edge it could be anywhere. Slopes see a pixel more to each side: all inside may be equal.
         if !(own > 0.0 && determinant > 1e-3 * (xx + yy) * (xx + yy)) {
             return Err(TemplateError::Untextured);
         }
+        let (own_right, own_down) = (dot(&values, &right), dot(&values, &down));
         let [mut x, mut y] = start;
         let mut correlation = -1.0;
         for _ in 0..STEPS {
             let mut seen = [0.0; COUNT];
             self.look(picture, warp, [x, y], &mut seen).ok_or(TemplateError::Edge)?;
-            let (mut cross, mut other) = (0.0, 0.0);
-            for (seen, value) in seen.iter().zip(&values) {
-                cross += seen * value;
-                other += seen * seen;
-            }
+            let (cross, other) = (dot(&seen, &values), dot(&seen, &seen));
             if !(other > 0.0) {
                 return Err(TemplateError::Untextured);
             }
             correlation = cross / ComplexField::sqrt(own * other);
             let gain = cross / other;
-            let (mut a, mut b) = (0.0, 0.0);
-            for ((seen, value), slope) in seen.iter().zip(&values).zip(&slopes) {
-                let off = gain * seen - value;
-                a += off * slope[0];
-                b += off * slope[1];
-            }
+            let (a, b) = (gain * dot(&seen, &right) - own_right, gain * dot(&seen, &down) - own_down);
             let (right, down) = ((yy * a - xy * b) / determinant, (xx * b - xy * a) / determinant);
             // It is the template that should move: the picture's place moves back.
             x -= warp[0][0] * right + warp[0][1] * down;
@@ -161,6 +165,8 @@ impl Template {
     /// The column of `row` from `least` to `most` at which the template correlates best with the other
     /// picture, unwarped and to whole pixels; refused where no column is far enough from the picture's
     /// edge.
+    // Apart, for it takes as much stack as what calls it.
+    #[inline(never)]
     pub fn match_row(
         &self,
         picture: &Picture<'_>,
@@ -168,15 +174,13 @@ impl Template {
         least: usize,
         most: usize,
     ) -> Result<RowMatch, TemplateError> {
-        let mut own = [[0_i32; SIDE]; SIDE];
-        let (mut sum, mut squares) = (0, 0);
+        let mut own = [[0_i16; SIDE]; SIDE];
         for (to, line) in own.iter_mut().zip(self.pixels.iter().skip(1)) {
             for (to, &pixel) in to.iter_mut().zip(line.iter().skip(1)) {
                 *to = pixel.into();
-                sum += *to;
-                squares += *to * *to;
             }
         }
+        let (sum, squares) = sums(own.as_flattened().iter().copied());
         let n = COUNT as i32;
         let own_spread = (n * squares - sum * sum) as f32;
         let (least, most) =
@@ -186,15 +190,19 @@ impl Template {
         for (line, row) in lines.iter_mut().zip(first_row..) {
             *line = picture.run(0, row, picture.width()).ok_or(TemplateError::Edge)?;
         }
-        let correlation = |column: usize| {
-            let (mut other, mut other_squares, mut cross) = (0, 0, 0);
+        let column_sums =
+            |x: usize| sums(lines.iter().map(|line| line.get(x).map_or(0, |&pixel| pixel.into())));
+        // The window's sums move with it: without the column on its right, which is still to come.
+        let mut others = (least - REACH..least.saturating_add(REACH)).map(column_sums).fold((0, 0), plus);
+        let mut correlation = |column: usize| {
+            let (other, other_squares) = plus(others, column_sums(column + REACH));
+            let (left, left_squares) = column_sums(column - REACH);
+            others = (other - left, other_squares - left_squares);
+            let mut cross = 0;
             for (line, own) in lines.iter().zip(&own) {
-                let Some(run) = line.get(column - REACH..=column + REACH) else { return -1.0 };
-                for (&pixel, &own) in run.iter().zip(own) {
-                    let pixel = i32::from(pixel);
-                    other += pixel;
-                    other_squares += pixel * pixel;
-                    cross += pixel * own;
+                let run = line.get(column - REACH..).and_then(|run| run.first_chunk::<SIDE>());
+                for (&pixel, &own) in run.unwrap_or(&[0; SIDE]).iter().zip(own) {
+                    cross += i32::from(i16::from(pixel)) * i32::from(own);
                 }
             }
             let spread = (n * other_squares - other * other) as f32;
@@ -226,56 +234,74 @@ impl Template {
         found.ok_or(TemplateError::Edge)
     }
 
-    /// The pixels without their mean, and their slopes without theirs.
-    fn values_and_slopes(&self) -> ([f32; COUNT], [[f32; 2]; COUNT]) {
-        let (mut values, mut slopes) = ([0.0; COUNT], [[0.0; 2]; COUNT]);
-        let mut at = values.iter_mut().zip(&mut slopes);
-        for rows in self.pixels.windows(3) {
+    /// The pixels and their slopes.
+    #[inline(never)]
+    fn shape(&self) -> Shape {
+        let mut shape = Shape { values: [0.0; COUNT], slopes: [[0.0; COUNT]; 2] };
+        let Shape { values, slopes: [right, down] } = &mut shape;
+        let lines =
+            values.chunks_exact_mut(SIDE).zip(right.chunks_exact_mut(SIDE).zip(down.chunks_exact_mut(SIDE)));
+        for (rows, (values, (rights, downs))) in self.pixels.windows(3).zip(lines) {
             let [above, here, below] = rows else { continue };
-            for ((around, above), below) in
-                here.windows(3).zip(above.iter().skip(1)).zip(below.iter().skip(1))
-            {
-                let (&[left, pixel, right], Some((value, slope))) = (around, at.next()) else { continue };
-                *value = f32::from(pixel);
-                let half = |a: u8, b: u8| (f32::from(b) - f32::from(a)) * 0.5;
-                *slope = [half(left, right), half(*above, *below)];
+            let half = |a: u8, b: u8| (f32::from(b) - f32::from(a)) * 0.5;
+            let places = values.iter_mut().zip(rights.iter_mut().zip(downs));
+            let columns = here.windows(3).zip(above.iter().skip(1).zip(below.iter().skip(1)));
+            for ((value, (right, down)), (around, (&above, &below))) in places.zip(columns) {
+                let &[before, pixel, after] = around else { continue };
+                *value = pixel.into();
+                *right = half(before, after);
+                *down = half(above, below);
             }
         }
-        let mean = values.iter().sum::<f32>() / COUNT as f32;
-        values.iter_mut().for_each(|v| *v -= mean);
-        let sums = slopes.iter().fold([0.0; 2], |s, g| [s[0] + g[0], s[1] + g[1]]);
-        for slope in &mut slopes {
-            slope[0] -= sums[0] / COUNT as f32;
-            slope[1] -= sums[1] / COUNT as f32;
-        }
-        (values, slopes)
+        centre(values);
+        centre(right);
+        centre(down);
+        shape
     }
 
-    /// The picture's brightness where the template's pixels come to lie, without its mean.
+    /// The picture's brightness where the template's pixels come to lie, without its mean; `None` where one
+    /// is outside.
     fn look(
         &self,
         picture: &Picture<'_>,
-        w: &[[f32; 2]; 2],
+        warp: &[[f32; 2]; 2],
         [x, y]: [f32; 2],
         out: &mut [f32; COUNT],
     ) -> Option<()> {
         let [right, down] = self.part;
         let from_middle = |i: usize, part: f32| i as f32 - REACH as f32 - part;
-        let along: [[f32; 2]; SIDE] = core::array::from_fn(|i| {
-            let a = from_middle(i, right);
-            [x + w[0][0] * a, y + w[1][0] * a]
-        });
-        let mut sum = 0.0;
-        for (j, row) in out.chunks_exact_mut(SIDE).enumerate() {
-            let b = from_middle(j, down);
-            let across = [w[0][1] * b, w[1][1] * b];
-            for (out, [x, y]) in row.iter_mut().zip(along) {
-                *out = picture.sample(x + across[0], y + across[1])?;
-                sum += *out;
-            }
+        if *warp == UPRIGHT {
+            let [column, row] = [from_middle(0, right) + x, from_middle(0, down) + y];
+            picture.sample_square::<SIDE>(column, row, out)?;
+        } else {
+            let ([a, b], [c, d]) = (warp[0], warp[1]);
+            let (i, j) = (from_middle(0, right), from_middle(0, down));
+            let start = [x + a * i + b * j, y + c * i + d * j];
+            picture.sample_parallelogram::<SIDE>(start, [a, c], [b, d], out)?;
         }
-        let mean = sum / COUNT as f32;
-        out.iter_mut().for_each(|v| *v -= mean);
+        centre(out);
         Some(())
     }
+}
+
+/// Takes the mean off.
+#[inline(never)]
+fn centre(values: &mut [f32; COUNT]) {
+    let mean = dot(values, &[1.0; COUNT]) / COUNT as f32;
+    values.iter_mut().for_each(|value| *value -= mean);
+}
+
+/// The inner product, of four sums that a processor with vectors has side by side.
+#[inline(never)]
+fn dot(a: &[f32; COUNT], b: &[f32; COUNT]) -> f32 {
+    let mut sums = [0.0; 4];
+    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
+    for (a, b) in (&mut a).zip(&mut b) {
+        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += a * b;
+        }
+    }
+    let rest: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
+    let [p, q, r, s] = sums;
+    (p + q) + (r + s) + rest
 }

@@ -68,10 +68,91 @@ impl<'a> Picture<'a> {
             self.run(column, row + 1, 2)?.first_chunk::<2>()?,
         );
         let (right, down) = (x - column as f32, y - row as f32);
-        let [a, b, c, d] = [a, b, c, d].map(f32::from);
-        let (above, below) = (a + (b - a) * right, c + (d - c) * right);
-        Some(above + (below - above) * down)
+        Some(between([a, b, c, d].map(f32::from), right, down))
     }
+
+    /// Fills `N` rows of `N` with the brightness at `start`, `along` a row, and `across` from row to row, px, by
+    /// bilinear interpolation; `None` where one is outside, or a step is 64 px or more.
+    ///
+    /// Places are rounded to 2^-14 px.
+    pub(crate) fn sample_parallelogram<const N: usize>(
+        &self,
+        start: [f32; 2],
+        along: [f32; 2],
+        across: [f32; 2],
+        out: &mut [f32],
+    ) -> Option<()> {
+        const BITS: u32 = 14;
+        const ONE: f32 = (1 << BITS) as f32;
+        // What is not a number is refused, too.
+        let fixed = |[x, y]: [f32; 2], most: f32| {
+            (x.abs() < most && y.abs() < most).then_some([(x * ONE) as i32, (y * ONE) as i32])
+        };
+        let (start, along, across) = (fixed(start, 65536.0)?, fixed(along, 64.0)?, fixed(across, 64.0)?);
+        let end = N as i32 - 1;
+        for (i, j) in [(0, 0), (0, end), (end, 0), (end, end)] {
+            let ([x, y], [a, c], [b, d]) = (start, along, across);
+            let (x, y) = (x + i * a + j * b, y + i * c + j * d);
+            let inside = |place: i32, size: usize| place >= 0 && ((place >> BITS) as usize + 1) < size;
+            if !inside(x, self.width) || !inside(y, self.height) {
+                return None;
+            }
+        }
+        // All others lie between the corners.
+        let ([mut first_x, mut first_y], [a, c], [b, d]) = (start, along, across);
+        for row in out.chunks_exact_mut(N) {
+            let (mut x, mut y) = (first_x, first_y);
+            for out in row {
+                let from = (y >> BITS) as usize * self.width + (x >> BITS) as usize;
+                let two = |from: usize| self.pixels.get(from..)?.first_chunk::<2>();
+                let (&[p, q], &[r, s]) = (two(from)?, two(from + self.width)?);
+                let part = |place: i32| (place & ((1 << BITS) - 1)) as f32 * (1.0 / ONE);
+                *out = between([p, q, r, s].map(f32::from), part(x), part(y));
+                (x, y) = (x + a, y + c);
+            }
+            (first_x, first_y) = (first_x + b, first_y + d);
+        }
+        Some(())
+    }
+
+    /// Fills rows of `N` with the brightness at (`x`, `y`) and to the right and below at steps of a pixel, by
+    /// bilinear interpolation; `None` where one of them is outside.
+    pub(crate) fn sample_square<const N: usize>(&self, x: f32, y: f32, out: &mut [f32]) -> Option<()> {
+        if !(x >= 0.0 && y >= 0.0) {
+            return None;
+        }
+        let (column, first_row) = (x as u32 as usize, y as u32 as usize);
+        let (right, down) = (x - column as f32, y - first_row as f32);
+        let mut above = self.between_columns::<N>(column, first_row, right)?;
+        for (row, out) in (first_row + 1..).zip(out.chunks_exact_mut(N)) {
+            let below = self.between_columns::<N>(column, row, right)?;
+            for (out, (above, below)) in out.iter_mut().zip(above.iter().zip(&below)) {
+                *out = above + (below - above) * down;
+            }
+            above = below;
+        }
+        Some(())
+    }
+
+    /// The brightness of a row from a column on, each so far to the right of a pixel.
+    #[inline(always)]
+    fn between_columns<const N: usize>(&self, column: usize, row: usize, right: f32) -> Option<[f32; N]> {
+        let run = self.run(column, row, N + 1)?;
+        let (here, next) = (run.first_chunk::<N>()?, run.last_chunk::<N>()?);
+        let mut between = [0.0; N];
+        for (between, (&here, &next)) in between.iter_mut().zip(here.iter().zip(next)) {
+            let [here, next] = [here, next].map(f32::from);
+            *between = here + (next - here) * right;
+        }
+        Some(between)
+    }
+}
+
+/// The brightness between two pixels and the two below them.
+#[inline(always)]
+fn between([a, b, c, d]: [f32; 4], right: f32, down: f32) -> f32 {
+    let (above, below) = (a + (b - a) * right, c + (d - c) * right);
+    above + (below - above) * down
 }
 
 #[cfg(test)]
@@ -88,5 +169,63 @@ mod tests {
         assert_eq!(picture.run(1, 1, 2), Some(&[16, 20][..]));
         assert_eq!(picture.run(2, 1, 2), None);
         assert!(matches!(Picture::new(&[0; 5], 3, 2), Err(PictureError::Pixels { needed: 6 })));
+    }
+
+    /// Waves of 20 x 12 pixels.
+    fn waves() -> [u8; 240] {
+        core::array::from_fn(|i| ((i % 20) * (i % 20) * 7 + (i / 20) * 31) as u8)
+    }
+
+    #[test]
+    fn a_square_is_its_samples() {
+        let pixels = waves();
+        let picture = Picture::new(&pixels, 20, 12).expect("as many pixels");
+        for (x, y) in [(0.0, 0.0), (3.25, 1.5), (14.75, 6.9), (7.0, 6.999)] {
+            let mut seen = [0.0; 25];
+            picture.sample_square::<5>(x, y, &mut seen).expect("inside");
+            for (i, &seen) in seen.iter().enumerate() {
+                let expected = picture.sample(x + (i % 5) as f32, y + (i / 5) as f32).expect("inside");
+                assert!((seen - expected).abs() < 1e-3, "{x} {y} {i}: {seen} {expected}");
+            }
+        }
+        // The last sample, and the one after it, lie inside or on the edge.
+        for (x, y) in [(15.0, 0.0), (0.0, 7.0), (-0.1, 0.0), (0.0, -0.1), (f32::NAN, 0.0), (1e30, 0.0)] {
+            assert_eq!(picture.sample_square::<5>(x, y, &mut [0.0; 25]), None, "{x} {y}");
+        }
+    }
+
+    #[test]
+    fn a_parallelogram_is_its_samples() {
+        let pixels = waves();
+        let picture = Picture::new(&pixels, 20, 12).expect("as many pixels");
+        // Turned, mirrored, sheared, and next to the edges.
+        let cases = [
+            ([2.5, 1.25], [1.0, 0.0], [0.0, 1.0]),
+            ([9.0, 2.0], [0.75, 0.5], [-0.5, 0.75]),
+            ([18.9, 0.0], [-1.5, 0.25], [-0.25, 2.0]),
+            ([0.0, 10.9], [4.5, -0.1], [0.1, -2.5]),
+        ];
+        for (start, along, across) in cases {
+            let mut seen = [0.0; 25];
+            picture.sample_parallelogram::<5>(start, along, across, &mut seen).expect("inside");
+            for (i, &seen) in seen.iter().enumerate() {
+                let (a, b) = ((i % 5) as f32, (i / 5) as f32);
+                let [x, y] = [0, 1].map(|k| start[k] + a * along[k] + b * across[k]);
+                let expected = picture.sample(x.max(0.0), y.max(0.0)).expect("inside");
+                // A place is rounded by less than 2^-14 px, and each step: nine of them, times 255 levels a pixel.
+                assert!((seen - expected).abs() < 9.0 * 2.0 * 255.0 / 16384.0, "{i}: {seen} {expected}");
+            }
+        }
+        let refused = [
+            ([-0.1, 0.0], [1.0, 0.0], [0.0, 1.0]),
+            ([0.0, 0.0], [1.0, -0.1], [0.0, 1.0]),
+            ([15.0, 0.0], [1.0, 0.0], [0.0, 1.0]),
+            ([0.0, 0.0], [64.0, 0.0], [0.0, 1.0]),
+            ([0.0, 0.0], [1.0, f32::NAN], [0.0, 1.0]),
+            ([f32::INFINITY, 0.0], [1.0, 0.0], [0.0, 1.0]),
+        ];
+        for (start, along, across) in refused {
+            assert_eq!(picture.sample_parallelogram::<5>(start, along, across, &mut [0.0; 25]), None);
+        }
     }
 }

@@ -1,10 +1,10 @@
 //! The passes for columns of any number of vectors, a pixel at a time: what the others have in registers is
-//! in memory here. Three to seven instructions more for 16 candidates, and some dozens for a pixel.
+//! in memory here. Two to four instructions more for 16 candidates and path, and some 40 for a pixel.
 #![allow(unsafe_code)]
 
 use super::LANES;
 use super::changes::changes;
-use super::down::{Ring, sources};
+use super::{down, leftward, rightward};
 use crate::matching::backend::mve::columns::BITS;
 use crate::matching::backend::mve::sides::complete;
 use crate::matching::backend::mve::windows::best_of_the_rest;
@@ -13,7 +13,7 @@ use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::work::{Guide, MASKS, PathWork};
 use crate::matching::memory::slices::{chunks_mut, part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Select, Unique};
 use core::arch::asm;
 
 /// What `cost::enter` does.
@@ -88,131 +88,207 @@ fn compare<S: SgmParameters>(pixel: [u8; 5], right: &[u8], count: usize, costs: 
     }
 }
 
-/// A path at a pixel: a column of costs, with a vector before and after that no path comes from.
-struct Path<'a> {
-    room: &'a mut [u8],
-    least: u8,
-}
-
-impl<'a> Path<'a> {
-    /// A path at its start, of no cost; `None` where there is too little room.
-    fn new(room: &'a mut [u8], stride: usize) -> Option<Self> {
-        let room = room.get_mut(..stride + 2 * LANES)?;
-        room.fill(u8::MAX);
-        part_mut(room, LANES..LANES + stride).fill(0);
-        Some(Self { room, least: 0 })
-    }
-
-    /// Makes it the average of two columns, rounded down.
-    #[inline(always)]
-    fn average(&mut self, before: &[u8], after: &[u8]) {
-        let groups = (self.room.len() / LANES).saturating_sub(2);
-        if groups == 0 || before.len() < groups * LANES || after.len() < groups * LANES {
-            return;
-        }
-        let mut least = u32::from(u8::MAX);
-        // SAFETY: as many vectors of both columns are read, and written inside of the room.
-        unsafe {
-            asm!(
-                "dls lr, {groups}",
-                "2:",
-                "vldrb.u8 q0, [{before}], #16",
-                "vldrb.u8 q1, [{after}], #16",
-                "vhadd.u8 q0, q0, q1",
-                "vstrb.8 q0, [{path}], #16",
-                "vminv.u8 {least}, q0",
-                "le lr, 2b",
-                groups = in(reg) groups, before = inout(reg) before.as_ptr() => _,
-                after = inout(reg) after.as_ptr() => _,
-                path = inout(reg) self.room.as_mut_ptr().add(LANES) => _, least = inout(reg) least,
-                out("lr") _, out("q0") _, out("q1") _, options(nostack),
-            );
-        }
-        self.least = least as u8;
-    }
-
-    /// Goes on to a pixel of these costs. Its own there, and if `ADDS` those that are in `from` already, or
-    /// in `to` where there is none, go to `to`, 255 at the most.
-    #[inline(always)]
-    fn advance<const ADDS: bool>(&mut self, change: u16, costs: &[u8], from: Option<&[u8]>, to: &mut [u8]) {
-        let groups = (self.room.len() / LANES).saturating_sub(2);
-        let is_whole = |column: &[u8]| column.len() >= groups * LANES;
-        if groups == 0 || !is_whole(costs) || !from.is_none_or(is_whole) || !is_whole(to) {
-            return;
-        }
-        let to = to.as_mut_ptr();
-        let from = from.map_or(to.cast_const(), <[u8]>::as_ptr);
-        let jump = u32::from(change >> 8);
-        let mut least = u32::from(u8::MAX);
-        // The path is written 16 bytes at a time: what is read one byte before is read first.
-        // SAFETY: as many vectors of the columns are read and written as the path has between the two of the
-        // room, of which is read from one byte before it to 15 after.
-        unsafe {
-            asm!(
-                "vldrb.u8 q4, [{path}, #-1]",
-                "dls lr, {groups}",
-                "2:",
-                "vldrb.u8 q5, [{path}, #1]",
-                "vmin.u8 q4, q4, q5",
-                "vldrb.u8 q5, [{path}, #15]",
-                "vqadd.u8 q4, q4, {step}",
-                "vldrb.u8 q0, [{path}]",
-                "vmin.u8 q0, q0, q4",
-                "vqadd.u8 q0, q0, {off}",
-                "vldrb.u8 q1, [{costs}], #16",
-                "vsub.i8 q0, q0, {jump}",
-                "vadd.i8 q0, q0, q1",
-                "vstrb.8 q0, [{path}], #16",
-                "vminv.u8 {least}, q0",
-                ".if {adds}",
-                "vldrb.u8 q1, [{from}], #16",
-                "vqadd.u8 q0, q1, q0",
-                ".endif",
-                "vstrb.8 q0, [{to}], #16",
-                "vmov q4, q5",
-                "le lr, 2b",
-                groups = in(reg) groups, path = inout(reg) self.room.as_mut_ptr().add(LANES) => _,
-                costs = inout(reg) costs.as_ptr() => _, from = inout(reg) from => _, to = inout(reg) to => _,
-                adds = const ADDS as u32,
-                step = in(reg) u32::from(change), jump = in(reg) jump,
-                off = in(reg) jump.wrapping_sub(self.least.into()), least = inout(reg) least,
-                out("lr") _, out("q0") _, out("q1") _, out("q4") _, out("q5") _, options(nostack),
-            );
-        }
-        self.least = least as u8;
-    }
-}
-
-/// The least of a column's sums and the smallest disparity that has it.
-#[inline(never)]
-fn least(sums: &[u8]) -> (u8, u8) {
-    let groups = sums.len() / LANES;
-    if groups == 0 {
-        return (u8::MAX, 0);
-    }
-    let (mut best, mut nearest) = (u32::from(u8::MAX), u32::from(u8::MAX));
-    // SAFETY: whole vectors of the sums are read.
+/// The path from above of some pixels: 18 instructions for 16 candidates, and ten for a pixel.
+///
+/// # Safety
+/// Columns of the run have `groups` vectors, and at `path` there are as many bytes to write, with one before
+/// and one after that no path comes from. `groups` is not 0.
+#[inline(always)]
+unsafe fn walk_down(run: down::Run, groups: usize, path: *mut u8) {
+    let down::Run { count, from: [before, after], out, costs, changes } = run;
+    // SAFETY: as the function's.
     unsafe {
         asm!(
-            "dls lr, {groups}",
-            "mov {at}, {sums}",
             "2:",
-            "vldrb.u8 q0, [{at}], #16",
-            "vminv.u8 {best}, q0",
-            "le lr, 2b",
             "dls lr, {groups}",
-            "2:",
-            "vldrb.u8 q0, [{sums}], #16",
-            "vddup.u8 q1, r4, #1",
-            "vpt.i8 eq, q0, {best}",
-            "vminvt.u8 {nearest}, q1",
-            "le lr, 2b",
-            groups = in(reg) groups, sums = inout(reg) sums.as_ptr() => _, at = out(reg) _,
-            best = inout(reg) best, nearest = inout(reg) nearest,
-            inout("r4") groups * LANES - 1 => _, out("lr") _, out("q0") _, out("q1") _, options(nostack),
+            "mov {least}, #255",
+            "3:",
+            "vldrb.u8 q0, [{before}], #16",
+            "vldrb.u8 q1, [{after}], #16",
+            "vhadd.u8 q0, q0, q1",
+            "vstrb.8 q0, [{path}], #16",
+            "vminv.u8 {least}, q0",
+            "le lr, 3b",
+            "ldrh {step}, [{changes}], #2",
+            "sub {path}, {path}, {groups}, lsl #4",
+            "lsr {jump}, {step}, #8",
+            "sub {least}, {jump}, {least}",
+            "dls lr, {groups}",
+            "3:",
+            "vldrb.u8 q4, [{path}, #-1]",
+            "vldrb.u8 q5, [{path}, #1]",
+            "vmin.u8 q4, q4, q5",
+            "vldrb.u8 q0, [{path}], #16",
+            "vqadd.u8 q4, q4, {step}",
+            "vmin.u8 q0, q0, q4",
+            "vqadd.u8 q0, q0, {least}",
+            "vldrb.u8 q1, [{costs}], #16",
+            "vsub.i8 q0, q0, {jump}",
+            "vadd.i8 q0, q0, q1",
+            "vstrb.8 q0, [{out}], #16",
+            "le lr, 3b",
+            "sub {path}, {path}, {groups}, lsl #4",
+            "subs {count}, {count}, #1",
+            "bne 2b",
+            count = inout(reg) count => _, before = inout(reg) before => _, after = inout(reg) after => _,
+            out = inout(reg) out => _, costs = inout(reg) costs => _, changes = inout(reg) changes => _,
+            path = inout(reg) path => _, groups = in(reg) groups, least = out(reg) _, step = out(reg) _,
+            jump = out(reg) _, out("lr") _, out("q0") _, out("q1") _, out("q4") _, out("q5") _,
+            options(nostack),
         );
     }
-    (best as u8, nearest as u8)
+}
+
+/// The path from the left of some pixels: 17 instructions for 16 candidates, and nine for a pixel. `least` is
+/// the path's least cost.
+///
+/// # Safety
+/// As [`walk_down`]'s; the path is read as well.
+#[inline(always)]
+unsafe fn walk_right(run: rightward::Run, groups: usize, least: &mut usize, path: *mut u8) {
+    let rightward::Run { count, costs, top, sums, changes } = run;
+    // The path is written 16 bytes at a time: what is read one byte before is read first.
+    // SAFETY: as the function's.
+    unsafe {
+        asm!(
+            "2:",
+            "ldrh {step}, [{changes}], #2",
+            "dls lr, {groups}",
+            "lsr {jump}, {step}, #8",
+            "sub {off}, {jump}, {least}",
+            "mov {least}, #255",
+            "vldrb.u8 q4, [{path}, #-1]",
+            "3:",
+            "vldrb.u8 q5, [{path}, #1]",
+            "vmin.u8 q4, q4, q5",
+            "vldrb.u8 q5, [{path}, #15]",
+            "vqadd.u8 q4, q4, {step}",
+            "vldrb.u8 q0, [{path}]",
+            "vmin.u8 q0, q0, q4",
+            "vqadd.u8 q0, q0, {off}",
+            "vldrb.u8 q1, [{costs}], #16",
+            "vsub.i8 q0, q0, {jump}",
+            "vadd.i8 q0, q0, q1",
+            "vstrb.8 q0, [{path}], #16",
+            "vminv.u8 {least}, q0",
+            "vldrb.u8 q1, [{top}], #16",
+            "vadd.i8 q1, q1, q0",
+            "vstrb.8 q1, [{sums}], #16",
+            "vmov q4, q5",
+            "le lr, 3b",
+            "sub {path}, {path}, {groups}, lsl #4",
+            "subs {count}, {count}, #1",
+            "bne 2b",
+            count = inout(reg) count => _, costs = inout(reg) costs => _, top = inout(reg) top => _,
+            sums = inout(reg) sums => _, changes = inout(reg) changes => _, path = inout(reg) path => _,
+            groups = in(reg) groups, least = inout(reg) *least, step = out(reg) _, jump = out(reg) _,
+            off = out(reg) _, out("lr") _, out("q0") _, out("q1") _, out("q4") _, out("q5") _,
+            options(nostack),
+        );
+    }
+}
+
+/// Where a path from the right is. The assembly reads and writes the numbers in this order.
+#[repr(C)]
+struct Leftward {
+    /// The change into the pixel, and its place in the second row of winners.
+    change: *const u16,
+    row: *mut u8,
+    /// Bytes from row to row.
+    width: usize,
+    /// Pixels that are to come.
+    count: usize,
+}
+
+/// The path from the right of some pixels, added to their sums, and their winners: 21 instructions for 16
+/// candidates, and 36 for a pixel. `least` is the path's least cost.
+///
+/// # Safety
+/// At `costs` there are the first pixel's costs, of `groups` vectors, with those of the pixels to come before
+/// them, and at `sums` its sums, likewise, which are written as well; changes are read, and the four rows of
+/// the winners written, of as many pixels. Of pixels that have fewer candidates than lanes the lanes without
+/// one are 255 in the sums, and the first pixel of a line has one candidate. At `path` there are as many bytes
+/// as in a column, with one before and one after that no path comes from. Neither number is 0.
+#[inline(never)]
+unsafe fn walk_left(
+    mut at: Leftward,
+    groups: usize,
+    least: &mut usize,
+    path: *mut u8,
+    costs: *const u8,
+    sums: *mut u8,
+) {
+    // SAFETY: as the function's. What stands beside the winner is one of the column's lanes, but below
+    // disparity 0, where nothing is read, and above the last lane, before which is another column.
+    unsafe {
+        asm!(
+            "2:",
+            "ldr {jump}, [{at}]",
+            "dls lr, {groups}",
+            "ldrh {step}, [{jump}], #-2",
+            "str {jump}, [{at}]",
+            "lsr {jump}, {step}, #8",
+            "sub {off}, {jump}, {least}",
+            "mov {least}, #255",
+            "mov {best}, #255",
+            "vldrb.u8 q4, [{path}, #-1]",
+            // The least of each lane in any vector, and the disparity of the last vector that has it.
+            "vmov.i8 q2, #255",
+            "lsl r4, {groups}, #4",
+            "sub r4, r4, #1",
+            "3:",
+            "vldrb.u8 q5, [{path}, #1]",
+            "vmin.u8 q4, q4, q5",
+            "vldrb.u8 q5, [{path}, #15]",
+            "vqadd.u8 q4, q4, {step}",
+            "vldrb.u8 q0, [{path}]",
+            "vmin.u8 q0, q0, q4",
+            "vqadd.u8 q0, q0, {off}",
+            "vldrb.u8 q1, [{costs}], #16",
+            "vsub.i8 q0, q0, {jump}",
+            "vadd.i8 q0, q0, q1",
+            "vstrb.8 q0, [{path}], #16",
+            "vminv.u8 {least}, q0",
+            "vldrb.u8 q1, [{sums}]",
+            "vqadd.u8 q1, q1, q0",
+            "vstrb.8 q1, [{sums}], #16",
+            "vddup.u8 q6, r4, #1",
+            "vptt.u8 cs, q2, q1",
+            "vmovt q2, q1",
+            "vmovt q3, q6",
+            "vmov q4, q5",
+            "le lr, 3b",
+            "vminv.u8 {best}, q2",
+            "mov {off}, #255",
+            "vpt.i8 eq, q2, {best}",
+            "vminvt.u8 {off}, q3",
+            "ldrd {jump}, {step}, [{at}, #4]",
+            "strb {best}, [{jump}]",
+            "strb {off}, [{jump}, {step}, lsl #1]",
+            "sub r4, {sums}, {off}",
+            "ldrb {best}, [r4, #-2]",
+            "strb {best}, [{jump}, {step}]",
+            "sub {step}, {jump}, {step}",
+            "cmp {off}, #0",
+            "it ne",
+            "ldrbne {best}, [r4]",
+            "strb {best}, [{step}]",
+            "sub {jump}, {jump}, #1",
+            "str {jump}, [{at}, #4]",
+            "sub {path}, {path}, {groups}, lsl #4",
+            "sub {costs}, {costs}, {groups}, lsl #5",
+            "ldr {jump}, [{at}, #12]",
+            "sub {sums}, {sums}, {groups}, lsl #5",
+            "subs {jump}, {jump}, #1",
+            "str {jump}, [{at}, #12]",
+            "bne 2b",
+            at = in(reg) &raw mut at, groups = in(reg) groups, path = inout(reg) path => _,
+            costs = inout(reg) costs => _, sums = inout(reg) sums => _, least = inout(reg) *least,
+            step = out(reg) _, jump = out(reg) _, off = out(reg) _, best = out(reg) _,
+            out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
+            out("q5") _, out("q6") _, options(nostack),
+        );
+    }
 }
 
 /// Selects the winners of a row.
@@ -220,58 +296,70 @@ fn least(sums: &[u8]) -> (u8, u8) {
 pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
     let Select { mut winners, mut unique, .. } = select;
     let (width, stride) = (work.width, work.stride.max(LANES));
-    let begin = work.min_disparity.min(width);
-    let ring = Ring::new(width, guide.row);
+    let (begin, groups) = (work.min_disparity.min(width), stride / LANES);
     let workspace = core::mem::take(&mut work.workspace);
     let (along, rest) = split_mut(view_mut::<u32, u16>(workspace), width + 1);
-    let room = view_mut::<u16, u8>(rest);
+    // A path, with a vector before and after that no path comes from.
+    let Some(room) = view_mut::<u16, u8>(rest).get_mut(..stride + 2 * LANES) else { return };
+    room.fill(u8::MAX);
     let down = part_mut(view_mut::<u8, u16>(winners.bytes()), ..width);
     changes(guide.here, guide.above.unwrap_or(guide.here), work.penalties, down);
-    let (costs, tops) = (&*work.costs, &mut *work.top);
-    if guide.above.is_none() {
-        tops.fill(0);
-    }
-    let (sums, at) = (&mut *work.sums, |x: usize| x * stride..(x + 1) * stride);
-    let Some(mut path) = Path::new(room, stride) else { return };
-    for (x, &change) in down.iter().enumerate() {
-        let [before, after] = sources(ring, width, x).map(|(place, _)| part(tops, at(place)));
-        path.average(before, after);
-        path.advance::<false>(change, part(costs, at(x)), None, part_mut(tops, at(ring.place(x).0)));
-    }
+    down::go(work, guide, down, stride, |run| {
+        // SAFETY: the columns are those of `go`; the path is in the room.
+        unsafe { walk_down(run, groups, room.as_mut_ptr().add(LANES)) }
+    });
 
     changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, part_mut(along, 1..width));
-    let Some(mut path) = Path::new(room, stride) else { return };
-    for (x, &change) in along.iter().enumerate().take(width) {
-        let top = part(tops, at(ring.place(x).0));
-        path.advance::<true>(change, part(costs, at(x)), Some(top), part_mut(sums, at(x)));
-    }
+    part_mut(room, LANES..LANES + stride).fill(0);
+    let mut least = 0;
+    rightward::go(work, guide.row, along, stride, |run| {
+        // SAFETY: as above.
+        unsafe { walk_right(run, groups, &mut least, room.as_mut_ptr().add(LANES)) }
+    });
 
-    let Some(mut path) = Path::new(room, stride) else { return };
-    let mut rows = winners.rows(begin);
-    for x in (begin..width).rev() {
-        let sums = part_mut(sums, at(x));
-        // The first pixels have fewer candidates than there are lanes.
-        let candidates = work.disparities.min(x + 1 - begin);
-        if candidates < stride {
-            part_mut(sums, ..stride - candidates).fill(u8::MAX);
-        }
-        let change = along.get(x + 1).copied().unwrap_or(0);
-        path.advance::<true>(change, part(costs, at(x)), None, sums);
-        let (cost, disparity) = least(sums);
-        let lane = (stride - 1).wrapping_sub(disparity.into());
-        let beside = [lane + 1, lane.wrapping_sub(1)].map(|lane| sums.get(lane).copied().unwrap_or(0));
-        let found = [beside[0], cost, beside[1], disparity];
-        let places = [&mut rows.below, &mut rows.costs, &mut rows.above, &mut rows.disparities];
-        for (row, found) in places.into_iter().zip(found) {
-            if let Some(place) = row.get_mut(x - begin) {
-                *place = found;
-            }
-        }
-        unique.check(x, cost, || {
-            let zeros = part(MASKS, MASKS.len() - stride..);
-            best_of_the_rest(disparity.into(), zeros, sums)
-        });
-    }
+    part_mut(room, LANES..LANES + stride).fill(0);
+    select_leftward(work, begin, along, room, winners.bytes(), unique);
+    let rows = winners.rows(begin);
     let rows = [rows.below, rows.costs, rows.above, rows.disparities];
     complete(rows, work.disparities);
+}
+
+/// Takes the path from the right through the row, up to the column `begin`, and selects the winners.
+fn select_leftward(
+    work: &mut PathWork<'_>,
+    begin: usize,
+    along: &[u16],
+    room: &mut [u8],
+    rows: &mut [u8],
+    mut unique: Unique<'_>,
+) {
+    let (width, stride) = (work.width, work.stride.max(LANES));
+    let is_whole = work.costs.len() >= width * stride && work.sums.len() >= width * stride;
+    if !is_whole || along.len() <= width || rows.len() < 4 * width || room.len() < stride + 2 * LANES {
+        return;
+    }
+    leftward::close(work, begin, stride);
+    let (mut end, mut least) = (width, 0);
+    while end > begin {
+        let count = if unique.is_asked() { 1 } else { end - begin };
+        let last = end - 1;
+        // SAFETY: `count` columns before `end` are in the row, of which all memory has been made sure to have
+        // them; the sums are closed, and the path is in the room.
+        unsafe {
+            let row = rows.as_mut_ptr().add(width + last);
+            let at = Leftward { change: along.as_ptr().add(end), row, width, count };
+            let costs = work.costs.as_ptr().add(last * stride);
+            let sums = work.sums.as_mut_ptr().add(last * stride);
+            walk_left(at, stride / LANES, &mut least, room.as_mut_ptr().add(LANES), costs, sums);
+        }
+        end -= count;
+        if unique.is_asked() {
+            let found = |row: usize| rows.get(row * width + end).copied().unwrap_or(0);
+            let (cost, disparity) = (found(1), found(3));
+            let sums = part_mut(work.sums, end * stride..(end + 1) * stride);
+            unique.check(end, cost, || {
+                best_of_the_rest(disparity.into(), part(MASKS, MASKS.len() - stride..), sums)
+            });
+        }
+    }
 }

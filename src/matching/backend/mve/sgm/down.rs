@@ -2,7 +2,6 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
-use super::room::Room;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
 use core::arch::asm;
@@ -43,21 +42,33 @@ impl Ring {
 /// The places of the two columns that the path into column `x` comes from, each with how many there are from
 /// it on. At the ends the nearest column that there is stands for those outside.
 #[inline(always)]
-pub(super) fn sources(ring: Ring, width: usize, x: usize) -> [(usize, usize); 2] {
+fn sources(ring: Ring, width: usize, x: usize) -> [(usize, usize); 2] {
     let last = width.saturating_sub(1);
     [x.saturating_sub(COLUMNS_OFF), (x + COLUMNS_OFF).min(last)].map(|column| ring.above().place(column))
 }
 
-/// Moves the path from above down to the row.
+/// Pixels whose columns follow each other in all memory: how many, the two places that the first one's path
+/// comes from, the one that it goes to, its costs, and its change. So many columns, and at least one, can be
+/// read and written there in this order; the last place may be one of the two.
+pub(super) struct Run {
+    pub count: usize,
+    pub from: [*const u8; 2],
+    pub out: *mut u8,
+    pub costs: *const u8,
+    pub changes: *const u16,
+}
+
+/// Moves the path from above down to the row, of columns of `stride` bytes: `walk` does it for each run.
 #[inline(always)]
-pub(super) fn go<const STRIDE: usize>(
+pub(super) fn go(
     work: &mut PathWork<'_>,
     guide: Guide<'_>,
     changes: &[u16],
-    room: &mut Room<'_, STRIDE>,
+    stride: usize,
+    mut walk: impl FnMut(Run),
 ) {
     let width = work.width;
-    let is_whole = work.top.len() >= (width + COLUMNS_OFF) * STRIDE && work.costs.len() >= width * STRIDE;
+    let is_whole = work.top.len() >= (width + COLUMNS_OFF) * stride && work.costs.len() >= width * stride;
     if !is_whole || changes.len() < width || width == 0 {
         return;
     }
@@ -76,32 +87,24 @@ pub(super) fn go<const STRIDE: usize>(
         let count = alike.min(of_before).min(of_after).min(of_out);
         let top = work.top.as_mut_ptr();
         // SAFETY: `count` columns from each of the three places on are in the ring, which `work.top` has,
-        // and from `x` on in the row; the room's path is its own. `count` is not 0.
-        unsafe {
-            let column = |place: usize| top.add(place * STRIDE);
-            let from = [column(before).cast_const(), column(after).cast_const()];
-            let costs = work.costs.as_ptr().add(x * STRIDE);
-            walk::<STRIDE>(count, from, column(out), costs, changes.as_ptr().add(x), room.path());
-        }
+        // and from `x` on in the row. `count` is not 0.
+        let run = unsafe {
+            let from = [before, after].map(|place| top.add(place * stride).cast_const());
+            let (out, costs) = (top.add(out * stride), work.costs.as_ptr().add(x * stride));
+            Run { count, from, out, costs, changes: changes.as_ptr().add(x) }
+        };
+        walk(run);
         x += count;
     }
 }
 
-/// The path of `count` pixels: 15 instructions for 16 candidates, and five for a pixel.
+/// The path of some pixels: 15 instructions for 16 candidates, and five for a pixel.
 ///
 /// # Safety
-/// So many columns of `STRIDE` bytes can be read from both `from` and from `costs` and written to `out`, in
-/// this order, which may be one of `from`; a change for each is read; and at `path` there is a path of a
-/// [`Room`].
+/// Columns of the run have `STRIDE` bytes, and at `path` there is a path of a [`Room`](super::room::Room).
 #[inline(always)]
-unsafe fn walk<const STRIDE: usize>(
-    count: usize,
-    [before, after]: [*const u8; 2],
-    out: *mut u8,
-    costs: *const u8,
-    changes: *const u16,
-    path: *mut u8,
-) {
+pub(super) unsafe fn walk<const STRIDE: usize>(run: Run, path: *mut u8) {
+    let Run { count, from: [before, after], out, costs, changes } = run;
     // SAFETY: as the function's.
     unsafe {
         asm!(

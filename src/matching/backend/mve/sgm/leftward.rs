@@ -30,7 +30,7 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
         if !is_whole || self.along.len() <= width || self.rows.len() < 4 * width || begin >= width {
             return;
         }
-        self.close();
+        close(self.work, self.begin, STRIDE);
         self.room.begin();
         let mut least = 0;
         let (mut end, is_checked) = (width, unique.is_asked());
@@ -48,41 +48,6 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
                     best_of_the_rest(disparity.into(), part(MASKS, MASKS.len() - STRIDE..), sums)
                 });
             }
-        }
-    }
-
-    /// Makes the sums of lanes that are not searched the most that there is, which they stay: the first
-    /// pixels have fewer candidates.
-    #[inline(never)]
-    fn close(&mut self) {
-        let (columns, disparities) = (self.work.width - self.begin, self.work.disparities.clamp(1, STRIDE));
-        let sums = part_mut(self.work.sums, self.begin * STRIDE..);
-        // The last columns have as many lanes as there are disparities, or there are none to be closed.
-        let most = if disparities < STRIDE { columns } else { columns.min(STRIDE - 1) };
-        if most == 0 || sums.len() < most * STRIDE {
-            return;
-        }
-        // SAFETY: of each of `most` columns at least one lane is written and at most all but one: the inner
-        // loop is one for so many lanes of bytes.
-        unsafe {
-            asm!(
-                "vmov.i8 q0, #255",
-                "2:",
-                "mov {lane}, {sums}",
-                "dlstp.8 lr, {closed}",
-                "3:",
-                "vstrb.8 q0, [{lane}], #16",
-                "letp lr, 3b",
-                "cmp {closed}, {least}",
-                "it hi",
-                "subhi {closed}, {closed}, #1",
-                "add {sums}, {sums}, #{stride}",
-                "subs {columns}, {columns}, #1",
-                "bne 2b",
-                sums = inout(reg) sums.as_mut_ptr() => _, columns = inout(reg) most => _,
-                closed = inout(reg) STRIDE - 1 => _, least = in(reg) (STRIDE - disparities).max(1),
-                lane = out(reg) _, stride = const STRIDE, out("lr") _, out("q0") _, options(nostack),
-            );
         }
     }
 
@@ -187,5 +152,40 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
                 out("q6") _, out("q7") _, options(nostack),
             );
         }
+    }
+}
+
+/// Makes the sums of lanes that are not searched the most that there is, which they stay: the first pixels
+/// from column `begin` on have fewer candidates than a column of `stride` has lanes.
+#[inline(never)]
+pub(super) fn close(work: &mut PathWork<'_>, begin: usize, stride: usize) {
+    let (columns, disparities) = (work.width - begin, work.disparities.clamp(1, stride));
+    let sums = part_mut(work.sums, begin * stride..);
+    // The last columns have as many lanes as there are disparities, or there are none to be closed.
+    let most = if disparities < stride { columns } else { columns.min(stride - 1) };
+    if most == 0 || sums.len() < most * stride {
+        return;
+    }
+    // SAFETY: of each of `most` columns at least one lane is written and at most all but one: the inner loop
+    // is one for so many lanes of bytes.
+    unsafe {
+        asm!(
+            "vmov.i8 q0, #255",
+            "2:",
+            "mov {lane}, {sums}",
+            "dlstp.8 lr, {closed}",
+            "3:",
+            "vstrb.8 q0, [{lane}], #16",
+            "letp lr, 3b",
+            "cmp {closed}, {least}",
+            "it hi",
+            "subhi {closed}, {closed}, #1",
+            "add {sums}, {sums}, {stride}",
+            "subs {columns}, {columns}, #1",
+            "bne 2b",
+            sums = inout(reg) sums.as_mut_ptr() => _, columns = inout(reg) most => _,
+            closed = inout(reg) stride - 1 => _, least = in(reg) (stride - disparities).max(1),
+            lane = out(reg) _, stride = in(reg) stride, out("lr") _, out("q0") _, options(nostack),
+        );
     }
 }

@@ -16,6 +16,7 @@
 //! * `features`: what is compared. `cost`: its comparison. `edges`: how far costs are averaged.
 //! * `changes`: what the paths pay at each pixel. `down`, `rightward`, `leftward`: the paths, the last one
 //!   with the winners. `room`: what they work with.
+#![allow(unsafe_code)]
 
 mod any;
 mod changes;
@@ -101,13 +102,21 @@ fn select_among<const STRIDE: usize>(work: &mut PathWork<'_>, guide: Guide<'_>, 
     // There are no winners yet where the changes down to the row are.
     let down = part_mut(view_mut::<u8, u16>(winners.bytes()), ..width);
     changes(guide.here, guide.above.unwrap_or(guide.here), work.penalties, down);
-    down::go::<STRIDE>(work, guide, down, &mut room);
+    down::go(work, guide, down, STRIDE, |run| {
+        // SAFETY: the columns are those of `go`, and the path is the room's own.
+        unsafe { down::walk::<STRIDE>(run, room.path()) }
+    });
 
     // Into a column from the one before it, from the right into that one from it. Nothing comes into the
     // first one nor into the last: what they pay is nothing whatever stands there.
     let places = part_mut(along, 1..width);
     changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, places);
-    rightward::go::<STRIDE>(work, guide.row, along, &mut room);
+    room.begin();
+    let mut least = 0;
+    rightward::go(work, guide.row, along, STRIDE, |run| {
+        // SAFETY: the columns are those of `go`, and the path is the room's own.
+        unsafe { rightward::walk::<STRIDE>(run, &mut least, room.path()) }
+    });
     if begin < width {
         let rows = winners.bytes();
         Leftward::<STRIDE> { work, begin, along, room, rows }.select(unique);

@@ -3,57 +3,60 @@
 
 use super::LANES;
 use super::down::Ring;
-use super::room::Room;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::layout::COLUMNS_OFF;
 use core::arch::asm;
 
-/// Takes the path through the row.
+/// Pixels whose columns follow each other in all memory: how many, the first one's costs, its path from
+/// above, its sums, and its change. So many columns, and at least one, can be read there or written.
+pub(super) struct Run {
+    pub count: usize,
+    pub costs: *const u8,
+    pub top: *const u8,
+    pub sums: *mut u8,
+    pub changes: *const u16,
+}
+
+/// Takes the path through the row, of columns of `stride` bytes: `walk` does it for each run.
 #[inline(always)]
-pub(super) fn go<const STRIDE: usize>(
+pub(super) fn go(
     work: &mut PathWork<'_>,
     row: usize,
     changes: &[u16],
-    room: &mut Room<'_, STRIDE>,
+    stride: usize,
+    mut walk: impl FnMut(Run),
 ) {
     let width = work.width;
-    let bytes = width * STRIDE;
-    let is_whole = work.top.len() >= bytes + COLUMNS_OFF * STRIDE && work.costs.len() >= bytes;
+    let bytes = width * stride;
+    let is_whole = work.top.len() >= bytes + COLUMNS_OFF * stride && work.costs.len() >= bytes;
     if !is_whole || work.sums.len() < bytes || changes.len() < width {
         return;
     }
     let ring = Ring::new(width, row);
-    room.begin();
-    let (mut x, mut least) = (0, 0);
+    let mut x = 0;
     while x < width {
         let (place, there) = ring.place(x);
         let count = there.min(width - x);
-        // SAFETY: `count` columns are in the ring from the place on, and in the row from `x` on; the room's
-        // path is its own. `count` is not 0.
-        unsafe {
-            let top = work.top.as_ptr().add(place * STRIDE);
-            let (costs, sums) = (work.costs.as_ptr().add(x * STRIDE), work.sums.as_mut_ptr().add(x * STRIDE));
-            walk::<STRIDE>(count, &mut least, [costs, top], sums, changes.as_ptr().add(x), room.path());
-        }
+        // SAFETY: `count` columns are in the ring from the place on, and in the row from `x` on. `count` is
+        // not 0.
+        let run = unsafe {
+            let top = work.top.as_ptr().add(place * stride);
+            let (costs, sums) = (work.costs.as_ptr().add(x * stride), work.sums.as_mut_ptr().add(x * stride));
+            Run { count, costs, top, sums, changes: changes.as_ptr().add(x) }
+        };
+        walk(run);
         x += count;
     }
 }
 
-/// The path of `count` pixels: 14 instructions for 16 candidates, and six for a pixel. `least` is the path's
+/// The path of some pixels: 14 instructions for 16 candidates, and six for a pixel. `least` is the path's
 /// least cost.
 ///
 /// # Safety
-/// So many columns of `STRIDE` bytes can be read from `costs` and `top` and written to `sums`; a change for
-/// each is read; and at `path` there is a path of a [`Room`].
+/// Columns of the run have `STRIDE` bytes, and at `path` there is a path of a [`Room`](super::room::Room).
 #[inline(always)]
-unsafe fn walk<const STRIDE: usize>(
-    count: usize,
-    least: &mut usize,
-    [costs, top]: [*const u8; 2],
-    sums: *mut u8,
-    changes: *const u16,
-    path: *mut u8,
-) {
+pub(super) unsafe fn walk<const STRIDE: usize>(run: Run, least: &mut usize, path: *mut u8) {
+    let Run { count, costs, top, sums, changes } = run;
     // The path is written 16 bytes at a time: what is read one byte before is read first.
     // SAFETY: as the function's.
     unsafe {

@@ -11,37 +11,6 @@ use crate::matching::backend::portable::sgm::features_by_four::{COLUMNS, REACH, 
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
 
-/// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
-/// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
-fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-    let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
-    let count = along.len().min(across.len()).min(census.len());
-    let groups = groups(width, count);
-    let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
-    // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they
-    // have places.
-    unsafe {
-        let place = |row: &mut [u8]| row.as_mut_ptr().wrapping_add(REACH).cast();
-        codes([above2, here, below2], place(census), groups);
-        gradients([above, here, below], gradient, [place(along), place(across)], groups);
-    }
-    let after = REACH + groups * COLUMNS;
-    let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
-    for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
-        let near = lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
-        let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened().as_ptr());
-        let [mut code, mut one, mut other] = [0; 3];
-        // SAFETY: a group sees three words of columns.
-        unsafe {
-            codes([above2, here, below2], &raw mut code, 1);
-            gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
-        }
-        for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-            put(part_mut(row, x..), word.to_le_bytes());
-        }
-    }
-}
-
 /// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees
 /// three words of a row's columns, and begins a word further on than the one before.
 ///
@@ -151,21 +120,6 @@ impl Cut {
     }
 }
 
-/// Half of each number.
-fn halve(numbers: &[u8], halves: &mut [u8]) {
-    let count = numbers.len().min(halves.len());
-    let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
-    let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
-    for (to, &from) in of_groups.iter_mut().zip(groups) {
-        keep_loop();
-        *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes();
-    }
-    for (to, from) in of_rest.iter_mut().zip(rest) {
-        keep_loop();
-        *to = from >> 1;
-    }
-}
-
 /// The range of one number: the least and the greatest of it and those halfway to its neighbours, rounded
 /// down; doubled.
 fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
@@ -180,40 +134,74 @@ fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
     (2 * min8(here, min8(a, b)), 2 * max8(here, max8(a, b)))
 }
 
-/// The ranges of all numbers but the two at the ends.
-fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-    let count = numbers.len().saturating_sub(2);
-    let [before, here, next] = [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
-    let [(low, low_rest), (high, high_rest)] =
-        [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
-    let fours = before.0.iter().zip(here.0).zip(next.0);
-    for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
-        let (least, greatest) = ranges([before, here, next].map(|four| u32::from_le_bytes(*four)));
-        (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
-    }
-    let ones = before.1.iter().zip(here.1).zip(next.1);
-    for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
-        (*low, *high) = between(before, here, next);
-    }
-}
-
 /// Features in Arm's instructions on four bytes.
 pub(in crate::matching::backend) struct DspRows;
 
 impl FeatureRows for DspRows {
-    #[inline(always)]
-    fn looks(lines: &Rows5<'_>, gradient: u8, rows: [&mut [u8]; 3]) {
-        looks(lines, gradient, rows);
+    /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
+    /// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
+    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+        let count = along.len().min(across.len()).min(census.len());
+        let groups = groups(width, count);
+        let [above2, above, here, below, below2] = lines.map(<[u8]>::as_ptr);
+        // SAFETY: what `groups` groups see from the first column on is in the lines, and from `REACH` on they
+        // have places.
+        unsafe {
+            let place = |row: &mut [u8]| row.as_mut_ptr().wrapping_add(REACH).cast();
+            codes([above2, here, below2], place(census), groups);
+            gradients([above, here, below], gradient, [place(along), place(across)], groups);
+        }
+        let after = REACH + groups * COLUMNS;
+        let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
+        for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
+            let near =
+                lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
+            let [above2, above, here, below, below2] =
+                near.each_ref().map(|near| near.as_flattened().as_ptr());
+            let [mut code, mut one, mut other] = [0; 3];
+            // SAFETY: a group sees three words of columns.
+            unsafe {
+                codes([above2, here, below2], &raw mut code, 1);
+                gradients([above, here, below], gradient, [&raw mut one, &raw mut other], 1);
+            }
+            for (row, word) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
+                put(part_mut(row, x..), word.to_le_bytes());
+            }
+        }
     }
 
-    #[inline(always)]
+    /// Half of each number.
     fn halve(numbers: &[u8], halves: &mut [u8]) {
-        halve(numbers, halves);
+        let count = numbers.len().min(halves.len());
+        let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
+        let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
+        for (to, &from) in of_groups.iter_mut().zip(groups) {
+            keep_loop();
+            *to = (u32::from_le_bytes(from) >> 1 & splat(0x7f)).to_le_bytes();
+        }
+        for (to, from) in of_rest.iter_mut().zip(rest) {
+            keep_loop();
+            *to = from >> 1;
+        }
     }
 
-    #[inline(always)]
+    /// The ranges of all numbers but the two at the ends.
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-        range(numbers, least, greatest);
+        let count = numbers.len().saturating_sub(2);
+        let [before, here, next] =
+            [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
+        let [(low, low_rest), (high, high_rest)] =
+            [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
+        let fours = before.0.iter().zip(here.0).zip(next.0);
+        for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
+            let (least, greatest) = ranges([before, here, next].map(|four| u32::from_le_bytes(*four)));
+            (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
+        }
+        let ones = before.1.iter().zip(here.1).zip(next.1);
+        for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
+            (*low, *high) = between(before, here, next);
+        }
     }
 
     #[inline(always)]

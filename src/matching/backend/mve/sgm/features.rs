@@ -15,19 +15,89 @@ const NEAR: usize = 3 * REACH;
 pub(super) struct HeliumRows;
 
 impl FeatureRows for HeliumRows {
+    /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
+    /// [`census_wide8`](crate::imaging::census_wide8).
     #[inline(always)]
-    fn looks(lines: &Rows5<'_>, gradient: u8, rows: [&mut [u8]; 3]) {
-        looks(lines, gradient, rows);
+    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+        let count = along.len().min(across.len()).min(census.len()).min(width);
+        let [above2, above, here, below, below2] = lines.map(|line| part(line, ..width));
+        // The columns that see nothing outside the line, then those at its ends: of a short line all.
+        let inner = REACH..count.min(width.saturating_sub(REACH)).max(REACH);
+        codes([above2, here, below2], census.get_mut(inner.clone()).unwrap_or_default());
+        let places = [&mut *along, &mut *across].map(|row| row.get_mut(inner.clone()).unwrap_or_default());
+        gradients(
+            [above, here, below].map(|line| line.get(REACH - 1..).unwrap_or_default()),
+            gradient,
+            places,
+        );
+        let (mut x, step) = (0, if width < NEAR { REACH } else { width - REACH });
+        while x < count {
+            let near = [above2, above, here, below, below2].map(|line| near(line, x));
+            let [above2, above, here, below, below2] = &near;
+            let places = x..count.min(x + REACH);
+            codes([above2, here, below2].map(<[u8; NEAR]>::as_slice), part_mut(census, places.clone()));
+            let near = [above, here, below].map(|near| part(near, REACH - 1..));
+            gradients(near, gradient, [&mut *along, &mut *across].map(|row| part_mut(row, places.clone())));
+            x += step;
+        }
     }
 
-    #[inline(always)]
+    /// Half of each number, of as many as both have.
+    #[inline(never)]
     fn halve(numbers: &[u8], halves: &mut [u8]) {
-        halve(numbers, halves);
+        let count = numbers.len().min(halves.len());
+        if count == 0 {
+            return;
+        }
+        // SAFETY: `count` bytes of both are read and written: the loop is one for so many lanes of bytes.
+        unsafe {
+            asm!(
+                "dlstp.8 lr, {count}",
+                "2:",
+                "vldrb.u8 q0, [{from}], #16",
+                "vshr.u8 q0, q0, #1",
+                "vstrb.8 q0, [{to}], #16",
+                "letp lr, 2b",
+                count = in(reg) count, from = inout(reg) numbers.as_ptr() => _,
+                to = inout(reg) halves.as_mut_ptr() => _, out("lr") _, out("q0") _, options(nostack),
+            );
+        }
     }
 
-    #[inline(always)]
+    /// The ranges of all numbers but the two at the ends, doubled: 14 instructions for 16 numbers.
+    #[inline(never)]
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-        range(numbers, least, greatest);
+        let count = numbers.len().min(least.len()).min(greatest.len()).saturating_sub(2);
+        if count == 0 {
+            return;
+        }
+        // SAFETY: the numbers between the first and the last are `count`; those are written, and read with the
+        // two: the loop is one for so many lanes of bytes.
+        unsafe {
+            asm!(
+                "dlstp.8 lr, {count}",
+                "2:",
+                "vldrb.u8 q1, [{numbers}, #1]",
+                "vldrb.u8 q2, [{numbers}, #2]",
+                "vldrb.u8 q0, [{numbers}], #16",
+                "vhadd.u8 q0, q0, q1",
+                "vhadd.u8 q2, q2, q1",
+                "vmin.u8 q3, q0, q2",
+                "vmax.u8 q0, q0, q2",
+                "vmin.u8 q3, q3, q1",
+                "vmax.u8 q0, q0, q1",
+                "vadd.i8 q3, q3, q3",
+                "vadd.i8 q0, q0, q0",
+                "vstrb.8 q3, [{least}], #16",
+                "vstrb.8 q0, [{greatest}], #16",
+                "letp lr, 2b",
+                count = in(reg) count, numbers = inout(reg) numbers.as_ptr() => _,
+                least = inout(reg) least.as_mut_ptr().wrapping_add(1) => _,
+                greatest = inout(reg) greatest.as_mut_ptr().wrapping_add(1) => _,
+                out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, options(nostack),
+            );
+        }
     }
 
     #[inline(always)]
@@ -35,30 +105,6 @@ impl FeatureRows for HeliumRows {
         // Seven bits each.
         let (a, b) = (before.wrapping_add(here) >> 1, here.wrapping_add(next) >> 1);
         (here.min(a).min(b).wrapping_mul(2), here.max(a).max(b).wrapping_mul(2))
-    }
-}
-
-/// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
-/// [`census_wide8`](crate::imaging::census_wide8).
-#[inline(always)]
-fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-    let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
-    let count = along.len().min(across.len()).min(census.len()).min(width);
-    let [above2, above, here, below, below2] = lines.map(|line| part(line, ..width));
-    // The columns that see nothing outside the line, then those at its ends: of a short line all.
-    let inner = REACH..count.min(width.saturating_sub(REACH)).max(REACH);
-    codes([above2, here, below2], census.get_mut(inner.clone()).unwrap_or_default());
-    let places = [&mut *along, &mut *across].map(|row| row.get_mut(inner.clone()).unwrap_or_default());
-    gradients([above, here, below].map(|line| line.get(REACH - 1..).unwrap_or_default()), gradient, places);
-    let (mut x, step) = (0, if width < NEAR { REACH } else { width - REACH });
-    while x < count {
-        let near = [above2, above, here, below, below2].map(|line| near(line, x));
-        let [above2, above, here, below, below2] = &near;
-        let places = x..count.min(x + REACH);
-        codes([above2, here, below2].map(<[u8; NEAR]>::as_slice), part_mut(census, places.clone()));
-        let near = [above, here, below].map(|near| part(near, REACH - 1..));
-        gradients(near, gradient, [&mut *along, &mut *across].map(|row| part_mut(row, places.clone())));
-        x += step;
     }
 }
 
@@ -185,63 +231,6 @@ fn gradients(rows: [&[u8]; 3], most: u8, [along, across]: [&mut [u8]; 2]) {
             inout("r3") along.as_mut_ptr() => _, inout("r4") across.as_mut_ptr() => _,
             out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _, out("q5") _,
             out("q6") _, out("q7") _, options(nostack),
-        );
-    }
-}
-
-/// Half of each number, of as many as both have.
-#[inline(never)]
-fn halve(numbers: &[u8], halves: &mut [u8]) {
-    let count = numbers.len().min(halves.len());
-    if count == 0 {
-        return;
-    }
-    // SAFETY: `count` bytes of both are read and written: the loop is one for so many lanes of bytes.
-    unsafe {
-        asm!(
-            "dlstp.8 lr, {count}",
-            "2:",
-            "vldrb.u8 q0, [{from}], #16",
-            "vshr.u8 q0, q0, #1",
-            "vstrb.8 q0, [{to}], #16",
-            "letp lr, 2b",
-            count = in(reg) count, from = inout(reg) numbers.as_ptr() => _,
-            to = inout(reg) halves.as_mut_ptr() => _, out("lr") _, out("q0") _, options(nostack),
-        );
-    }
-}
-
-/// The ranges of all numbers but the two at the ends, doubled: 14 instructions for 16 numbers.
-#[inline(never)]
-fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-    let count = numbers.len().min(least.len()).min(greatest.len()).saturating_sub(2);
-    if count == 0 {
-        return;
-    }
-    // SAFETY: the numbers between the first and the last are `count`; those are written, and read with the
-    // two: the loop is one for so many lanes of bytes.
-    unsafe {
-        asm!(
-            "dlstp.8 lr, {count}",
-            "2:",
-            "vldrb.u8 q1, [{numbers}, #1]",
-            "vldrb.u8 q2, [{numbers}, #2]",
-            "vldrb.u8 q0, [{numbers}], #16",
-            "vhadd.u8 q0, q0, q1",
-            "vhadd.u8 q2, q2, q1",
-            "vmin.u8 q3, q0, q2",
-            "vmax.u8 q0, q0, q2",
-            "vmin.u8 q3, q3, q1",
-            "vmax.u8 q0, q0, q1",
-            "vadd.i8 q3, q3, q3",
-            "vadd.i8 q0, q0, q0",
-            "vstrb.8 q3, [{least}], #16",
-            "vstrb.8 q0, [{greatest}], #16",
-            "letp lr, 2b",
-            count = in(reg) count, numbers = inout(reg) numbers.as_ptr() => _,
-            least = inout(reg) least.as_mut_ptr().wrapping_add(1) => _,
-            greatest = inout(reg) greatest.as_mut_ptr().wrapping_add(1) => _,
-            out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, options(nostack),
         );
     }
 }

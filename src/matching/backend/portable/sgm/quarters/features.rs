@@ -14,48 +14,70 @@ use crate::matching::memory::slices::{part, part_mut};
 pub(in crate::matching::backend) struct WordRows;
 
 impl FeatureRows for WordRows {
-    #[inline(always)]
-    fn looks(lines: &Rows5<'_>, gradient: u8, rows: [&mut [u8]; 3]) {
-        looks(lines, gradient, rows);
+    /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
+    /// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
+    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+        let count = along.len().min(across.len()).min(census.len());
+        let groups = groups(width, count);
+        let [above2, above, here, below, below2] = *lines;
+        codes([above2, here, below2], places(census, groups));
+        gradients([above, here, below], gradient, [places(along, groups), places(across, groups)]);
+        let after = REACH + groups * COLUMNS;
+        let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
+        for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
+            let near =
+                lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
+            let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened());
+            let [mut code, mut one, mut other] = [[[0; COLUMNS]]; 3];
+            codes([above2, here, below2], &mut code);
+            gradients([above, here, below], gradient, [&mut one, &mut other]);
+            for (row, [four]) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
+                put(part_mut(row, x..), four);
+            }
+        }
     }
 
-    #[inline(always)]
+    /// Half of each number.
     fn halve(numbers: &[u8], halves: &mut [u8]) {
-        halve(numbers, halves);
+        let count = numbers.len().min(halves.len());
+        let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
+        let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
+        for (to, &from) in of_groups.iter_mut().zip(groups) {
+            keep_loop();
+            *to = (u32::from_le_bytes(from) >> 1 & !TOP).to_le_bytes();
+        }
+        for (to, from) in of_rest.iter_mut().zip(rest) {
+            keep_loop();
+            *to = from >> 1;
+        }
     }
 
-    #[inline(always)]
+    /// The ranges of all numbers but the two at the ends.
+    #[inline(never)]
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-        range(numbers, least, greatest);
+        let count = numbers.len().saturating_sub(2);
+        let [before, here, next] =
+            [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
+        let [(low, low_rest), (high, high_rest)] =
+            [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
+        let fours = before.0.iter().zip(here.0).zip(next.0);
+        for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
+            keep_loop();
+            let (least, greatest) = ranges([before, here, next].map(|four| u32::from_le_bytes(*four)));
+            (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
+        }
+        let ones = before.1.iter().zip(here.1).zip(next.1);
+        for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
+            keep_loop();
+            (*low, *high) = WordRows::between(before, here, next);
+        }
     }
 
     #[inline(always)]
     fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
         let (least, greatest) = ranges([before, here, next].map(u32::from));
         (least as u8, greatest as u8)
-    }
-}
-
-/// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
-/// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
-fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-    let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
-    let count = along.len().min(across.len()).min(census.len());
-    let groups = groups(width, count);
-    let [above2, above, here, below, below2] = *lines;
-    codes([above2, here, below2], places(census, groups));
-    gradients([above, here, below], gradient, [places(along, groups), places(across, groups)]);
-    let after = REACH + groups * COLUMNS;
-    let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
-    for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
-        let near = lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
-        let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened());
-        let [mut code, mut one, mut other] = [[[0; COLUMNS]]; 3];
-        codes([above2, here, below2], &mut code);
-        gradients([above, here, below], gradient, [&mut one, &mut other]);
-        for (row, [four]) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-            put(part_mut(row, x..), four);
-        }
     }
 }
 
@@ -156,21 +178,6 @@ fn cut(differences: [u32; 2], most: u32) -> Group {
     (even | odd << 8).to_le_bytes()
 }
 
-/// Half of each number.
-fn halve(numbers: &[u8], halves: &mut [u8]) {
-    let count = numbers.len().min(halves.len());
-    let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
-    let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
-    for (to, &from) in of_groups.iter_mut().zip(groups) {
-        keep_loop();
-        *to = (u32::from_le_bytes(from) >> 1 & !TOP).to_le_bytes();
-    }
-    for (to, from) in of_rest.iter_mut().zip(rest) {
-        keep_loop();
-        *to = from >> 1;
-    }
-}
-
 /// The least and the greatest of four numbers of seven bits each and those halfway to their neighbours.
 #[inline(always)]
 fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
@@ -179,26 +186,6 @@ fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
     let (least, greatest) = (a - more, b + more);
     let here_marked = here | TOP;
     (here - over(here_marked.wrapping_sub(least)), greatest + over(here_marked.wrapping_sub(greatest)))
-}
-
-/// The ranges of all numbers but the two at the ends.
-#[inline(never)]
-fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-    let count = numbers.len().saturating_sub(2);
-    let [before, here, next] = [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
-    let [(low, low_rest), (high, high_rest)] =
-        [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
-    let fours = before.0.iter().zip(here.0).zip(next.0);
-    for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
-        keep_loop();
-        let (least, greatest) = ranges([before, here, next].map(|four| u32::from_le_bytes(*four)));
-        (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
-    }
-    let ones = before.1.iter().zip(here.1).zip(next.1);
-    for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
-        keep_loop();
-        (*low, *high) = WordRows::between(before, here, next);
-    }
 }
 
 #[cfg(test)]

@@ -15,7 +15,7 @@
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
 //! bits in nine instructions, and looks for the winner in a loop of its own. Here
 //!
-//! * the window's sums of 32 and of 64 candidates stay in registers along the row, those of any other number
+//! * the window's sums of 32, 48 and 64 candidates stay in registers along the row, those of any other number
 //!   are loaded and stored 16 at a time;
 //! * how many bits differ is looked up, by one load that takes a place for each of 16 lanes (one instruction,
 //!   though a core may spend a cycle on each place). The codes of `fast` have four bits: a byte holds those
@@ -188,6 +188,7 @@ fn row<S: WindowParameters, const MOST: usize>(work: WindowWork<'_>, select: Opt
     match work.stride {
         32 if MOST == 0 || MOST == 32 => row_of::<S, 32>(work, select),
         64 if MOST == 0 || MOST == 64 => row_of::<S, 64>(work, select),
+        48 if MOST == 0 => row_of::<S, 48>(work, select),
         _ if MOST == 0 || MOST == 16 => row_of::<S, 0>(work, select),
         _ => {}
     }

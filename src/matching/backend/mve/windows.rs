@@ -172,16 +172,18 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
     }
 
     /// [`Self::select`] among any number of candidates, with a mask: 17 instructions for 16 of them, two more
-    /// where only some digits of the columns count, and 17 for a pixel.
+    /// where only some digits of the columns count, and 21 for a pixel.
     #[inline(always)]
     fn select_among_any<S: WindowParameters>(&mut self, count: usize, mask: &[u8], step: usize) {
         // SAFETY: as for `select_among`.
         unsafe {
             asm!(
                 "2:",
-                "mov {least}, #255",
                 "lsr r4, {stride}, #4",
                 "dls lr, r4",
+                "sub r4, {stride}, #1",
+                // The least of each lane in any vector, and the disparity of the last vector that has it.
+                "vmov.i8 q3, #255",
                 "3:",
                 "vldrb.u8 q1, [{enters}], #16",
                 "vldrb.u8 q2, [{leaves}], #16",
@@ -195,21 +197,18 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 "vldrb.u8 q1, [{mask}], #16",
                 "vstrb.8 q0, [{sums}], #16",
                 "vorr q1, q1, q0",
-                "vminv.u8 {least}, q1",
+                "vddup.u8 q0, r4, #1",
+                "vptt.u8 cs, q3, q1",
+                "vmovt q3, q1",
+                "vmovt q4, q0",
                 "le lr, 3b",
+                "mov {least}, #255",
+                "mov {nearest}, #255",
+                "vminv.u8 {least}, q3",
+                "vpt.i8 eq, q3, {least}",
+                "vminvt.u8 {nearest}, q4",
                 "sub {mask}, {mask}, {stride}",
                 "add {mask}, {mask}, {step}",
-                "sub {sums}, {sums}, {stride}",
-                // The least of the disparities that have it.
-                "mov {nearest}, #255",
-                "dls lr, r4",
-                "sub r4, {stride}, #1",
-                "3:",
-                "vldrb.u8 q0, [{sums}], #16",
-                "vddup.u8 q1, r4, #1",
-                "vpt.i8 eq, q0, {least}",
-                "vminvt.u8 {nearest}, q1",
-                "le lr, 3b",
                 "sub r4, {sums}, {nearest}",
                 "sub {sums}, {sums}, {stride}",
                 "ldr r4, [r4, #-2]",
@@ -223,7 +222,8 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, stride = in(reg) self.stride,
                 record = inout(reg) self.room.as_mut_ptr() => _,
                 least = out(reg) _, nearest = out(reg) _, shift = const S::COLUMN_SHIFT,
-                out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, options(nostack),
+                out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
+                options(nostack),
             );
         }
     }

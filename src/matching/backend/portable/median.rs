@@ -89,11 +89,17 @@ pub(in crate::matching::backend) fn median_in_rows(rows: [&[Disparity]; 3], out:
 /// The medians of the pixels in the middle.
 #[inline(always)]
 fn group(rows: [&[Disparity; LANES + 2]; 3], out: &mut [Disparity; LANES]) {
+    let beside = |by: usize| {
+        rows.map(|row| {
+            row.get(by..).and_then(|row| row.first_chunk::<LANES>()).unwrap_or(&[Disparity::NONE; LANES])
+        })
+    };
+    let (left, middle, right) = (beside(0), beside(1), beside(2));
     for i in 0..LANES {
-        let centre = rows[1][i + 1].raw();
-        let nine = [i, i + 1, i + 2].map(|x| {
+        let centre = middle[1][i].raw();
+        let nine = [left, middle, right].map(|rows| {
             rows.map(|row| {
-                let raw = row[x].raw();
+                let raw = row[i].raw();
                 if raw == NONE { centre } else { raw }
             })
         });

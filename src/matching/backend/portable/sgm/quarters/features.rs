@@ -137,7 +137,8 @@ fn gradients([above, middle, below]: [&[u8]; 3], most: u8, [along, across]: [&mu
         let on =
             |last: [u32; 2], next: [u32; 2]| [last[0] >> 16 | next[0] << 16, last[1] >> 16 | next[1] << 16];
         let ((sums, fall), sums_on, fall_on) = (last, on(last.0, next.0), on(last.1, next.1));
-        let sides = [0, 1].map(|i| sums_on[i] + SIGNS - sums[i]);
+        // By place: an index of an iteration leaves a panic in a program that is made for size.
+        let sides = [sums_on[0] + SIGNS - sums[0], sums_on[1] + SIGNS - sums[1]];
         let ends = [fall[0] + 2 * fall[1] + fall_on[0], fall[1] + 2 * fall_on[0] + fall_on[1]];
         last = next;
         (*along, *across) = (cut(sides, most), cut(ends, most));

@@ -3,6 +3,7 @@
 
 use super::LANES;
 use super::sides::RECORD;
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::BESIDE;
@@ -244,6 +245,8 @@ pub(super) fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -
     let nearest = lane.saturating_sub(BESIDE)..sums.len().min(lane + BESIDE + 1);
     let mut kept = [u8::MAX; 2 * BESIDE + 1];
     for (kept, sum) in kept.iter_mut().zip(part_mut(sums, nearest.clone())) {
+        // A copy of so few bytes by a routine takes longer.
+        keep_loop();
         *kept = core::mem::replace(sum, u8::MAX);
     }
     let mut least = [u8::MAX; LANES];
@@ -253,6 +256,7 @@ pub(super) fn best_of_the_rest(disparity: usize, mask: &[u8], sums: &mut [u8]) -
         }
     }
     for (kept, sum) in kept.iter().zip(part_mut(sums, nearest)) {
+        keep_loop();
         *sum = *kept;
     }
     least.iter().fold(u8::MAX, |least, &lane| least.min(lane))

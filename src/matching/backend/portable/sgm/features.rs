@@ -122,9 +122,15 @@ once_without_vectors! {
         }
     }
 
-    /// Numbers, shifted to the right.
+    /// Numbers, shifted to the right, by up to seven bits.
     fn shift_down(numbers: &mut [u8], shift: u32) {
-        for number in numbers {
+        let (fours, rest) = numbers.as_chunks_mut();
+        let kept = u32::from(u8::MAX >> shift) * 0x0101_0101;
+        for four in fours {
+            keep_loop();
+            *four = (u32::from_le_bytes(*four) >> shift & kept).to_le_bytes();
+        }
+        for number in rest {
             keep_loop();
             *number >>= shift;
         }

@@ -44,6 +44,6 @@ pub use remap::{
     RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapPairError, RemapTable,
     RemapTableError,
 };
-pub(crate) use rows::{RowRing, part};
+pub(crate) use rows::{RowRing, chunks, chunks_mut, part};
 pub use smooth::smooth;
 pub use window::LineWindow;

@@ -41,6 +41,30 @@ impl<'a, T, const N: usize> RowRing<'a, T, N> {
     }
 }
 
+/// The whole parts of `count` numbers, one after another; of one number where none are asked for.
+///
+/// [`slice::chunks_exact`] panics without a count, and an optimiser that makes code for size leaves that in.
+#[inline(always)]
+pub(crate) fn chunks<T>(slice: &[T], count: usize) -> impl Iterator<Item = &[T]> {
+    let (mut rest, count) = (slice, count.max(1));
+    core::iter::from_fn(move || {
+        let (chunk, behind) = rest.split_at_checked(count)?;
+        rest = behind;
+        Some(chunk)
+    })
+}
+
+/// Mutable access to what [`chunks`] gives.
+#[inline(always)]
+pub(crate) fn chunks_mut<T>(slice: &mut [T], count: usize) -> impl Iterator<Item = &mut [T]> {
+    let (mut rest, count) = (slice, count.max(1));
+    core::iter::from_fn(move || {
+        let (chunk, behind) = core::mem::take(&mut rest).split_at_mut_checked(count)?;
+        rest = behind;
+        Some(chunk)
+    })
+}
+
 /// The `N` samples of a row from `begin` on, which are inside. Where the caller has compared that, nothing is
 /// compared here.
 #[inline(always)]

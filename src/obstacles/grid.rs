@@ -2,6 +2,7 @@
 //!
 //! Of a cell every third column counts: answers side by side share most of their windows.
 
+use crate::imaging::chunks;
 use crate::units::{Disparity, PixelFlags};
 
 /// A group of a cell's answers, each within one px of the one before it: a slanted surface is one group.
@@ -143,9 +144,9 @@ pub(super) fn fill(
     let width = cell_width.max(1);
     let mut all = 0;
     if !confidences.is_empty() && min_confidence > 0 {
-        let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
+        let pixels = chunks(disparities, width).zip(chunks(flags, width));
         for (cell, ((disparities, flags), sure)) in
-            cells.iter_mut().zip(pixels.zip(confidences.chunks_exact(width)))
+            cells.iter_mut().zip(pixels.zip(chunks(confidences, width)))
         {
             for (place, ((d, flags), &confidence)) in disparities.iter().zip(flags).zip(sure).enumerate() {
                 let counts = confidence >= min_confidence && place.is_multiple_of(3);
@@ -155,7 +156,7 @@ pub(super) fn fill(
     } else if let 4 = width {
         all = fill_fours(cells, disparities, flags);
     } else {
-        let pixels = disparities.chunks_exact(width).zip(flags.chunks_exact(width));
+        let pixels = chunks(disparities, width).zip(chunks(flags, width));
         for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {
             all |= cell.take(disparities, flags);
         }

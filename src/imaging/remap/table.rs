@@ -195,7 +195,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     fn note_rows(&mut self) {
         let begin = Self::nodes(self.size, self.shift());
         let last_row = i32::from(self.raw.height.saturating_sub(1));
-        let of = |place: i32| (place >> BITS).clamp(0, last_row);
+        let of = |place: i32| (place >> BITS).max(0).min(last_row);
         let cell = Cell::new(self.shift(), self.piece());
         let (mut last_so_far, mut most) = (0, 0);
         for row in 0..self.size.height {

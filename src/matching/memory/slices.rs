@@ -3,6 +3,7 @@
 //! A part that is not there is a mistake of this crate: an assertion in debug builds, and an empty slice in
 //! others, for nothing here may panic.
 
+pub(in crate::matching) use crate::imaging::{chunks, chunks_mut};
 use core::slice::SliceIndex;
 
 /// A part of a slice, by a range.
@@ -33,30 +34,6 @@ pub(in crate::matching) fn part_mut<T>(
 pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut [T], &mut [T]) {
     debug_assert!(place <= slice.len(), "{} numbers have no place {place}", slice.len());
     slice.split_at_mut_checked(place).unwrap_or_default()
-}
-
-/// The whole parts of `count` numbers, one after another; of one number where none are asked for.
-///
-/// [`slice::chunks_exact`] panics without a count, and an optimiser that makes code for size leaves that in.
-#[inline(always)]
-pub(in crate::matching) fn chunks<T>(slice: &[T], count: usize) -> impl Iterator<Item = &[T]> {
-    let (mut rest, count) = (slice, count.max(1));
-    core::iter::from_fn(move || {
-        let (chunk, behind) = rest.split_at_checked(count)?;
-        rest = behind;
-        Some(chunk)
-    })
-}
-
-/// Mutable access to what [`chunks`] gives.
-#[inline(always)]
-pub(in crate::matching) fn chunks_mut<T>(slice: &mut [T], count: usize) -> impl Iterator<Item = &mut [T]> {
-    let (mut rest, count) = (slice, count.max(1));
-    core::iter::from_fn(move || {
-        let (chunk, behind) = core::mem::take(&mut rest).split_at_mut_checked(count)?;
-        rest = behind;
-        Some(chunk)
-    })
 }
 
 /// Copies numbers, as many as both have.

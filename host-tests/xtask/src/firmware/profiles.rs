@@ -14,10 +14,17 @@ use stereopsis_host::run::MethodName;
 
 /// A core with assembly and one without.
 const CORES: [Board; 2] = [M4, RV32];
+/// A method over windows and one along paths.
+const METHODS: [MethodName; 2] = [MethodName::Block, MethodName::Sgm];
 /// Levels of optimisation, as cargo spells them.
 const LEVELS: [&str; 3] = ["3", "s", "z"];
 /// Those of a sample: two of a level, whose flash is compared.
-const SAMPLE: [(&str, Lto); 3] = [("3", Lto::Fat), ("3", Lto::Thin), ("z", Lto::Off)];
+const SAMPLE: [(MethodName, &str, Lto); 4] = [
+    (MethodName::Block, "3", Lto::Fat),
+    (MethodName::Block, "3", Lto::Thin),
+    (MethodName::Block, "z", Lto::Off),
+    (MethodName::Sgm, "s", Lto::Fat),
+];
 /// Width, height and disparities.
 const SIZE: (u16, u16, u16) = (160, 120, 32);
 /// How much more flash than the least of its level a program may take.
@@ -38,19 +45,25 @@ pub fn run(readme: Readme) -> Outcome {
     let is_sample = readme == Readme::Sample;
     let cores = if is_sample { &CORES[..1] } else { &CORES };
     setup::firmware(&CORES.map(|board| board.target))?;
-    let all = LEVELS.into_iter().flat_map(|level| Lto::ALL.map(|lto| (level, lto)));
+    let levels = || LEVELS.into_iter().flat_map(|level| Lto::ALL.map(|lto| (level, lto)));
+    let all = METHODS.into_iter().flat_map(|method| levels().map(move |(level, lto)| (method, level, lto)));
     let asked: Vec<_> = all.filter(|asked| !is_sample || SAMPLE.contains(asked)).collect();
-    let cases = cores.iter().flat_map(|&board| asked.iter().map(move |&(level, lto)| (board, level, lto)));
+    let cases = cores.iter().flat_map(|&board| asked.iter().map(move |&asked| (board, asked)));
     let measured = parallel::work(cases.collect(), measure)?;
-    for &board in cores {
+    for (&board, method) in cores.iter().flat_map(|board| METHODS.map(|method| (board, method))) {
         for level in LEVELS {
             let flash = |one: &Measured| one.frame.sizes.flash();
-            let of_level = || measured.iter().filter(|m| m.frame.program.board == board && m.level == level);
-            let least = of_level().map(flash).min().unwrap_or_default();
-            if let Some(large) = of_level().find(|one| flash(one) as f64 > MOST_GROWTH * least as f64) {
+            let is_of = |one: &&Measured| {
+                let program = &one.frame.program;
+                program.board == board && program.method == method && one.level == level
+            };
+            let least = measured.iter().filter(is_of).map(flash).min().unwrap_or_default();
+            let is_large = |one: &&Measured| flash(one) as f64 > MOST_GROWTH * least as f64;
+            if let Some(large) = measured.iter().filter(is_of).find(is_large) {
                 let (core, lto, flash) = (board.core, large.lto.name(), flash(large));
                 return Err(Failure::new(format!(
-                    "{core} at opt-level {level} with lto {lto}: {flash} bytes of flash, another has {least}"
+                    "{core}, {method}, at opt-level {level} with lto {lto}: {flash} bytes of flash, another has \
+                     {least}"
                 )));
             }
         }
@@ -61,9 +74,9 @@ pub fn run(readme: Readme) -> Outcome {
 }
 
 /// One frame of the built-in scene.
-fn measure((board, level, lto): (Board, &'static str, Lto)) -> Outcome<Measured> {
+fn measure((board, (method, level, lto)): (Board, (MethodName, &'static str, Lto))) -> Outcome<Measured> {
     let (width, height, disparities) = SIZE;
-    let program = Program::new(board, MethodName::Block, width, height, disparities)?;
+    let program = Program::new(board, method, width, height, disparities)?;
     let built = program.build_as(level, lto)?;
     let scene = Pictures::of_scene(Scene { width, height })?;
     Ok(Measured { level, lto, frame: frame::run(&built, &scene, true)? })
@@ -71,18 +84,21 @@ fn measure((board, level, lto): (Board, &'static str, Lto)) -> Outcome<Measured>
 
 /// A line for each program.
 fn table(measured: &[Measured]) -> String {
-    let mut table = "| core | opt-level | lto | instructions | for an evaluation | stack | flash | panic \
-                     symbols |\n| --- | --- | --- | ---: | ---: | ---: | ---: | ---: |\n"
+    let mut table = "| core | method | opt-level | lto | instructions | for an evaluation | stack | flash | \
+                     of it dense path | panic symbols |\n| --- | --- | --- | --- | ---: | ---: | ---: | ---: \
+                     | ---: | ---: |\n"
         .to_owned();
     for Measured { level, lto, frame } in measured {
         table += &format!(
-            "| {} | {level} | {} | {} | {:.2} | {} | {} | {} |\n",
+            "| {} | `{}` | {level} | {} | {} | {:.2} | {} | {} | {} | {} |\n",
             frame.program.board.core,
+            frame.program.method,
             lto.name(),
             frame.instructions,
             frame.per_evaluation(),
             frame.stack,
             frame.sizes.flash(),
+            frame.sizes.dense_flash,
             frame.sizes.panics.len()
         );
     }

@@ -70,7 +70,7 @@ pub(super) fn of_eight_bits<const STRIDE: usize>(
     room: &mut [u8],
     columns: &mut [u8],
 ) {
-    let width = columns.len() / stride;
+    let width = columns.len().checked_div(stride).unwrap_or(0);
     let [enter, leave] = rows;
     let (new, old) = split_mut(room, width + stride - 1);
     let codes = |row, room| codes(row, width, min_disparity, stride, room);

@@ -51,7 +51,7 @@ use super::work::{
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, split_mut};
+use crate::matching::memory::slices::{chunks, part, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Lengths, Select, WinnerRows};
 use crate::units::{Disparity, PixelFlags};
@@ -230,7 +230,7 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     // The column that leaves at the first pixel is among them.
     let from = |column: usize| part(columns, (column * stride).min(columns.len())..);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
-    let columns = leaves.chunks_exact(stride).take(2 * S::RADIUS_X + 1);
+    let columns = chunks(leaves, stride).take(2 * S::RADIUS_X + 1);
     let mut windows = Windows::<STRIDE>::new(stride, leaves, enters, room);
     let inside = windows.sums();
     match inside.first_chunk_mut::<STRIDE>() {

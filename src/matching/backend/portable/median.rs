@@ -94,15 +94,13 @@ fn group(rows: [&[Disparity; LANES + 2]; 3], out: &mut [Disparity; LANES]) {
             row.get(by..).and_then(|row| row.first_chunk::<LANES>()).unwrap_or(&[Disparity::NONE; LANES])
         })
     };
-    let (left, middle, right) = (beside(0), beside(1), beside(2));
+    let ([a, b, c], [d, e, f], [g, h, k]) = (beside(0), beside(1), beside(2));
     for i in 0..LANES {
-        let centre = middle[1][i].raw();
-        let nine = [left, middle, right].map(|rows| {
-            rows.map(|row| {
-                let raw = row[i].raw();
-                if raw == NONE { centre } else { raw }
-            })
-        });
+        // Not in a closure: where that is a function, it leaves a panic.
+        let nine = [[a[i], b[i], c[i]], [d[i], e[i], f[i]], [g[i], h[i], k[i]]];
+        let centre = e[i].raw();
+        let nine = nine
+            .map(|column| column.map(|answer| if answer == Disparity::NONE { centre } else { answer.raw() }));
         let median = middle_of_nine(nine, |a, b| (a.min(b), a.max(b)));
         out[i] = Disparity::from_raw(if centre == NONE { NONE } else { median });
     }

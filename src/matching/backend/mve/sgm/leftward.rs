@@ -159,7 +159,7 @@ impl<const STRIDE: usize> Leftward<'_, '_, STRIDE> {
 /// from column `begin` on have fewer candidates than a column of `stride` has lanes.
 #[inline(never)]
 pub(super) fn close(work: &mut PathWork<'_>, begin: usize, stride: usize) {
-    let (columns, disparities) = (work.width - begin, work.disparities.clamp(1, stride));
+    let (columns, disparities) = (work.width - begin, work.disparities.min(stride).max(1));
     let sums = part_mut(work.sums, begin * stride..);
     // The last columns have as many lanes as there are disparities, or there are none to be closed.
     let most = if disparities < stride { columns } else { columns.min(stride - 1) };

@@ -84,11 +84,14 @@ impl<'a> Picture<'a> {
     ) -> Option<()> {
         const BITS: u32 = 14;
         const ONE: f32 = (1 << BITS) as f32;
-        // What is not a number is refused, too.
+        const MOST_STEP: f32 = 64.0;
+        // To the nearest: what is more than 0 is rounded down. What is not a number is refused, too.
+        let nearest = |x: f32| ((x + MOST_STEP) * ONE + 0.5) as i32 - (MOST_STEP * ONE) as i32;
         let fixed = |[x, y]: [f32; 2], most: f32| {
-            (x.abs() < most && y.abs() < most).then_some([(x * ONE) as i32, (y * ONE) as i32])
+            (x.abs() < most && y.abs() < most).then_some([nearest(x), nearest(y)])
         };
-        let (start, along, across) = (fixed(start, 65536.0)?, fixed(along, 64.0)?, fixed(across, 64.0)?);
+        let (start, along, across) =
+            (fixed(start, 65536.0)?, fixed(along, MOST_STEP)?, fixed(across, MOST_STEP)?);
         let end = N as i32 - 1;
         for (i, j) in [(0, 0), (0, end), (end, 0), (end, end)] {
             let ([x, y], [a, c], [b, d]) = (start, along, across);

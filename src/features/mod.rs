@@ -30,6 +30,7 @@ mod feature;
 mod match_config;
 mod config;
 mod grid;
+mod inner_product;
 mod feature_matcher;
 mod duplicates;
 mod subpixel;

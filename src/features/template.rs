@@ -5,6 +5,7 @@
     reason = "`!(a > b)` refuses what is not a number together with what is too small"
 )]
 
+use super::inner_product::{centre, dot};
 use crate::imaging::Picture;
 use nalgebra::ComplexField;
 
@@ -282,26 +283,4 @@ impl Template {
         centre(out);
         Some(())
     }
-}
-
-/// Takes the mean off.
-#[inline(never)]
-fn centre(values: &mut [f32; COUNT]) {
-    let mean = dot(values, &[1.0; COUNT]) / COUNT as f32;
-    values.iter_mut().for_each(|value| *value -= mean);
-}
-
-/// The inner product, of four sums that a processor with vectors has side by side.
-#[inline(never)]
-fn dot(a: &[f32; COUNT], b: &[f32; COUNT]) -> f32 {
-    let mut sums = [0.0; 4];
-    let (mut a, mut b) = (a.chunks_exact(4), b.chunks_exact(4));
-    for (a, b) in (&mut a).zip(&mut b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
-        }
-    }
-    let rest: f32 = a.remainder().iter().zip(b.remainder()).map(|(a, b)| a * b).sum();
-    let [p, q, r, s] = sums;
-    (p + q) + (r + s) + rest
 }

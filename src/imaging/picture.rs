@@ -71,8 +71,8 @@ impl<'a> Picture<'a> {
         Some(between([a, b, c, d].map(f32::from), right, down))
     }
 
-    /// Fills `N` rows of `N` with the brightness at `start`, `along` a row, and `across` from row to row, px, by
-    /// bilinear interpolation; `None` where one is outside, or a step is 64 px or more.
+    /// Fills `N` rows of `N` with the brightness at `start`, `along` a row, and `across` from row to row, px,
+    /// by bilinear interpolation; `None` where one is outside, or a step is 64 px or more.
     ///
     /// Places are rounded to 2^-14 px.
     pub(crate) fn sample_parallelogram<const N: usize>(
@@ -215,7 +215,7 @@ mod tests {
                 let (a, b) = ((i % 5) as f32, (i / 5) as f32);
                 let [x, y] = [0, 1].map(|k| start[k] + a * along[k] + b * across[k]);
                 let expected = picture.sample(x.max(0.0), y.max(0.0)).expect("inside");
-                // A place is rounded by less than 2^-14 px, and each step: nine of them, times 255 levels a pixel.
+                // A place and each step are rounded by 2^-14 px at most: nine of them, times 255 levels a px.
                 assert!((seen - expected).abs() < 9.0 * 2.0 * 255.0 / 16384.0, "{i}: {seen} {expected}");
             }
         }

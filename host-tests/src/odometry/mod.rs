@@ -10,6 +10,7 @@ pub mod error;
 pub mod picture;
 pub mod poses;
 mod prepared;
+mod rig;
 pub mod run;
 pub mod sequence;
 mod smoother;

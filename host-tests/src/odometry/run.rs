@@ -1,33 +1,22 @@
 //! A sequence through the core's odometry.
 
 use super::prepared::Prepared;
+pub use super::rig::{POINTS, Rig};
+use super::smoother::{Followed, Told, smooth};
 pub use super::smoother::{MOST_VIEWS, VIEWS};
-use super::smoother::{Told, smooth};
 use super::trajectory::Trajectory;
 use crate::correspond::CorrespondError;
 use image::GrayImage;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::ScopedJoinHandle;
-use stereopsis::geometry::camera::{Camera, RectifiedRig};
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
     Frame, MonocularOdometry, ObservedPoint, OdometryConfig, OdometryError, OdometryRigError, RigEstimate,
     Step, StereoOdometry,
 };
 
-/// Points that are followed at most.
-pub const POINTS: usize = 2048;
 /// The odometry is made and moved on the stack.
 const STACK: usize = 256 << 20;
-
-/// The cameras.
-#[derive(Clone, Copy, Debug)]
-pub enum Rig {
-    /// A pair with aligned rows.
-    Stereo(RectifiedRig),
-    /// One camera.
-    Mono(Camera<f64>),
-}
 
 /// Why there is no trajectory.
 #[derive(Debug, thiserror::Error)]
@@ -242,7 +231,8 @@ impl<'a> Follower<'a> {
         let step = self.odometry.step(&frame)?;
         let rig = self.odometry.rig();
         self.is_corrected = rig.is_some_and(|rig| rig.is_applied);
-        let _ = self.sender.send(Told::Step { step, rig, points: self.odometry.observed_points() });
+        let followed = Followed { step, rig, points: self.odometry.observed_points() };
+        let _ = self.sender.send(Told::Frame(Box::new(followed)));
         Ok(step)
     }
 }

@@ -1,6 +1,6 @@
 //! The last views of a sequence adjusted together, while the next frames are followed.
 
-use super::run::{POINTS, Rig};
+use super::rig::{POINTS, Rig};
 use super::trajectory::Trajectory;
 use std::sync::mpsc::Receiver;
 use stereopsis::geometry::camera::Pose;
@@ -15,10 +15,18 @@ pub const VIEWS: usize = 8;
 
 /// What the odometry says.
 pub(super) enum Told {
-    /// Of a frame: its motion, how a pair differs from its calibration, and the points that it saw.
-    Step { step: Step<f64>, rig: Option<RigEstimate<f64>>, points: Vec<ObservedPoint<f64>> },
+    /// Of the next frame.
+    Frame(Box<Followed>),
     /// The frames so far are gone through again.
     Again,
+}
+
+/// A frame that was followed.
+pub(super) struct Followed {
+    pub step: Step<f64>,
+    /// How a pair differs from its calibration.
+    pub rig: Option<RigEstimate<f64>>,
+    pub points: Vec<ObservedPoint<f64>>,
 }
 
 type Refined = Refinement<f64, MOST_VIEWS, { 2 * POINTS }, { 4 * POINTS * MOST_VIEWS }>;
@@ -35,7 +43,8 @@ pub(super) fn smooth(rig: &Rig, views: usize, told: Receiver<Told>) -> Result<Tr
     let mut trajectory = Trajectory::default();
     for told in told {
         match told {
-            Told::Step { step, rig, points } => {
+            Told::Frame(frame) => {
+                let Followed { step, rig, points } = *frame;
                 trajectory.push(step);
                 trajectory.rigs.extend(rig);
                 if let Some(smoother) = &mut smoother {

@@ -28,7 +28,7 @@ const SAMPLE: [(MethodName, &str, Lto); 4] = [
 /// Width, height and disparities.
 const SIZE: (u16, u16, u16) = (160, 120, 32);
 /// How much more flash than the least of its level a program may take.
-const MOST_GROWTH: f64 = 1.25;
+const MOST_GROWTH: f64 = 1.3;
 
 /// The part of docs/performance.md.
 const PART: Part = Part { name: "profiles", command: "cargo xtask firmware --profiles" };
@@ -62,8 +62,8 @@ pub fn run(readme: Readme) -> Outcome {
             if let Some(large) = measured.iter().filter(is_of).find(is_large) {
                 let (core, lto, flash) = (board.core, large.lto.name(), flash(large));
                 return Err(Failure::new(format!(
-                    "{core}, {method}, at opt-level {level} with lto {lto}: {flash} bytes of flash, another has \
-                     {least}"
+                    "{core}, {method}, at opt-level {level} with lto {lto}: {flash} bytes of flash, \
+                     another has {least}"
                 )));
             }
         }
@@ -73,13 +73,13 @@ pub fn run(readme: Readme) -> Outcome {
     tables::into_readme(&PART, &table, readme)
 }
 
-/// One frame of the built-in scene.
+/// One frame of the built-in scene. What is made for size may take more than 2 KB of stack.
 fn measure((board, (method, level, lto)): (Board, (MethodName, &'static str, Lto))) -> Outcome<Measured> {
     let (width, height, disparities) = SIZE;
     let program = Program::new(board, method, width, height, disparities)?;
     let built = program.build_as(level, lto)?;
     let scene = Pictures::of_scene(Scene { width, height })?;
-    Ok(Measured { level, lto, frame: frame::run(&built, &scene, true)? })
+    Ok(Measured { level, lto, frame: frame::with_any_stack(&built, &scene, true)? })
 }
 
 /// A line for each program.

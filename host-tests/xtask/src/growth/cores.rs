@@ -25,8 +25,8 @@ const HEIGHTS: [u16; 4] = [30, 60, 120, 240];
 const DISPARITIES: [u16; 7] = [16, 32, 48, 64, 96, 128, 256];
 
 /// How many times as much an evaluation may cost as at a smaller size: lines that are no whole words long
-/// cost more, and so do more disparities than the windows of a Cortex-M55 are in assembly for.
-const MOST: f64 = 1.75;
+/// cost more, and so do more than 64 disparities where sums are no longer kept in registers.
+const MOST: f64 = 1.3;
 /// The same where the disparities are no multiple of 32: kernels that keep 32 of them in a word work in
 /// halves then.
 const MOST_IN_HALVES: f64 = 2.0;

@@ -72,8 +72,8 @@ impl FeatureRows for HeliumRows {
         if count == 0 {
             return;
         }
-        // SAFETY: the numbers between the first and the last are `count`; those are written, and read with the
-        // two: the loop is one for so many lanes of bytes.
+        // SAFETY: the numbers between the first and the last are `count`; those are written, and read with
+        // the two: the loop is one for so many lanes of bytes.
         unsafe {
             asm!(
                 "dlstp.8 lr, {count}",

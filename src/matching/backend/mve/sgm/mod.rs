@@ -1,5 +1,5 @@
 //! Costs along paths in Helium: the passes of `portable::sgm` for columns of 16, 32, 48 and 64 candidates,
-//! one to four vectors; for any other number they are in `any`.
+//! one to four vectors; for any other number they are in `any` and `any_paths`.
 //!
 //! * A path stays in memory, between bytes that no path comes from: what stands beside a disparity is the
 //!   same vector one byte off.
@@ -19,6 +19,7 @@
 #![allow(unsafe_code)]
 
 mod any;
+mod any_paths;
 mod changes;
 mod cost;
 mod down;

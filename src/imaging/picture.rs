@@ -88,7 +88,7 @@ impl<'a> Picture<'a> {
         // To the nearest: what is more than 0 is rounded down. What is not a number is refused, too.
         let nearest = |x: f32| ((x + MOST_STEP) * ONE + 0.5) as i32 - (MOST_STEP * ONE) as i32;
         let fixed = |[x, y]: [f32; 2], most: f32| {
-            (x.abs() < most && y.abs() < most).then_some([nearest(x), nearest(y)])
+            (x.abs() < most && y.abs() < most).then(|| [nearest(x), nearest(y)])
         };
         let (start, along, across) =
             (fixed(start, 65536.0)?, fixed(along, MOST_STEP)?, fixed(across, MOST_STEP)?);

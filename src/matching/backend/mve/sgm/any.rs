@@ -1,5 +1,6 @@
-//! The passes for columns of any number of vectors, a pixel at a time: what the others have in registers is
-//! in memory here. Two to four instructions more for 16 candidates and path, and some 40 for a pixel.
+//! The passes for columns of any number of vectors: costs a pixel at a time, paths for runs of pixels
+//! (`any_paths`). What the others have in registers is in memory here: two to four instructions more for 16
+//! candidates and path, and some 40 for a pixel.
 #![allow(unsafe_code)]
 
 use super::LANES;
@@ -92,7 +93,7 @@ fn compare<S: SgmParameters>(pixel: [u8; 5], right: &[u8], count: usize, costs: 
 /// Selects the winners of a row.
 #[inline(never)]
 pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-    let Select { mut winners, mut unique, .. } = select;
+    let Select { mut winners, unique, .. } = select;
     let (width, stride) = (work.width, work.stride.max(LANES));
     let (begin, groups) = (work.min_disparity.min(width), stride / LANES);
     let workspace = core::mem::take(&mut work.workspace);

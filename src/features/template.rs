@@ -18,8 +18,6 @@ const COUNT: usize = SIDE * SIDE;
 const STEPS: usize = 10;
 /// A step that is no more, px.
 const LITTLE: f32 = 0.01;
-/// The warp that changes nothing.
-const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
 
 /// The 11 x 11 pixels around a place of a picture, with a margin of one.
 #[derive(Clone, Copy, Debug)]
@@ -93,6 +91,8 @@ fn plus(a: (i32, i32), b: (i32, i32)) -> (i32, i32) {
 impl Template {
     /// Pixels to either side that a template needs.
     pub const MARGIN: usize = REACH + 1;
+    /// The warp of pixels that are neither turned nor scaled.
+    pub const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
     /// Nothing: finds nothing.
     pub const NONE: Self = Self { pixels: [[0; OUTER]; OUTER], part: [0.0; 2] };
 
@@ -271,7 +271,7 @@ impl Template {
     ) -> Option<()> {
         let [right, down] = self.part;
         let from_middle = |i: usize, part: f32| i as f32 - REACH as f32 - part;
-        if *warp == UPRIGHT {
+        if *warp == Self::UPRIGHT {
             let [column, row] = [from_middle(0, right) + x, from_middle(0, down) + y];
             picture.sample_square::<SIDE>(column, row, out)?;
         } else {

@@ -1,7 +1,7 @@
 //! Sequences of pictures through the core's odometry.
 //!
 //! * [`sequence`]: the frames of a folder, of one camera or of two.
-//! * `prepared`: what of a frame does not depend on those before it.
+//! * `rig`: the cameras. `prepared`: what of a frame does not depend on those before it.
 //! * [`run`]: frames in, a [`trajectory`] out, with what is known of every pose. `smoother`: the last views
 //!   adjusted together.
 //! * [`poses`]: trajectories as KITTI's files have them. [`error`]: how far they are off. [`picture`]: drawn.

@@ -4,6 +4,7 @@ use stereopsis::geometry::camera::{Camera, RectifiedRig};
 
 /// Points that are followed at most.
 pub const POINTS: usize = 2048;
+
 /// The cameras.
 #[derive(Clone, Copy, Debug)]
 pub enum Rig {

@@ -1,7 +1,6 @@
 //! Disparity of one point, by aligning its template with the right picture.
 
 use super::frame::Moment;
-use super::track::UPRIGHT;
 use crate::features::Template;
 use crate::geometry::Real;
 
@@ -20,7 +19,7 @@ pub(super) fn disparity<T: Real>(now: &Moment<'_, T>, [x, y]: [f32; 2], expected
     let template = Template::cut(&now.frame.left, x, y).ok()?;
     let start = x - expected + offset;
     let start = start + now.rig.correction_px(start);
-    let found = template.align(&right, &UPRIGHT, [start, y], ALIGN_PX).ok()?;
+    let found = template.align(&right, &Template::UPRIGHT, [start, y], ALIGN_PX).ok()?;
     let good = found.correlation > CORRELATED && (found.y_px - y).abs() < ROWS_PX;
     good.then(|| x - found.x_px + offset + now.rig.correction_px(found.x_px))
 }

@@ -9,9 +9,9 @@ use super::motion_model::MotionModel;
 use super::point_map::PointMap;
 use super::pose_estimate::{FEWEST, Free, PointMatch, Problem, Solved};
 use super::step::{State, Step};
-use super::track::UPRIGHT;
 use super::tracking::Tracker;
 use super::whitening::PointObservation;
+use crate::features::Template;
 use crate::geometry::linear::covariance6;
 use crate::geometry::{
     Real,
@@ -102,7 +102,7 @@ fn align<T: Real>(now: &Moment<'_, T>, map: &mut PointMap<'_, T>, tracker: &mut 
     tracker.matches.clear();
     for (owner, track) in (0_u16..).zip(map.tracks.iter_mut()).filter(|(_, track)| track.used) {
         let start = track.now.unwrap_or(track.pixel);
-        let aligned = track.template.align(&now.frame.left, &UPRIGHT, start, 3.0).ok();
+        let aligned = track.template.align(&now.frame.left, &Template::UPRIGHT, start, 3.0).ok();
         let aligned = aligned.filter(|found| found.correlation > CORRELATED);
         let Some(place) = aligned.map(|found| [found.x_px, found.y_px]).or(track.now) else { continue };
         (track.now, track.pixel) = (Some(place), place);

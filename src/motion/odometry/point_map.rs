@@ -4,7 +4,7 @@ use super::disparity::{CORRELATED, disparity};
 use super::frame::Moment;
 use super::inverse_depth::InversePoint;
 use super::pose_estimate::{PointMatch, Problem, WIDTH};
-use super::track::{Track, UPRIGHT, product};
+use super::track::{Track, product};
 use crate::features::{Feature, Template};
 use crate::geometry::{Real, camera::Pose};
 use nalgebra::{Matrix3, Matrix6, Point2, Point3, Vector3};
@@ -97,7 +97,7 @@ impl<T: Real> PointMap<'_, T> {
                     let fits = grown > GROWN[0] && grown < GROWN[1] && track.correlation > LEAST_CORRELATION;
                     if !fits && let Ok(template) = Template::cut(&now.frame.left, pixel[0], pixel[1]) {
                         track.template = template;
-                        track.warp = UPRIGHT;
+                        track.warp = Template::UPRIGHT;
                     }
                 }
                 None => {
@@ -202,7 +202,7 @@ fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual: T) -> Optio
         template,
         descriptor: feature.descriptor,
         pixel,
-        warp: UPRIGHT,
+        warp: Template::UPRIGHT,
         correlation: 1.0,
         seen: 1,
         used: true,

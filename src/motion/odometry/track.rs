@@ -36,9 +36,6 @@ pub struct Track<T: Real> {
     pub(super) anchor: Option<Vector3<T>>,
 }
 
-/// The warp of a patch that is neither turned nor scaled.
-pub(super) const UPRIGHT: [[f32; 2]; 2] = [[1.0, 0.0], [0.0, 1.0]];
-
 /// The product of two warps.
 pub(super) fn product(a: &[[f32; 2]; 2], b: &[[f32; 2]; 2]) -> [[f32; 2]; 2] {
     let row = |[x, y]: [f32; 2]| [x * b[0][0] + y * b[1][0], x * b[0][1] + y * b[1][1]];

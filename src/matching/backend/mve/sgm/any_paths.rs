@@ -5,6 +5,27 @@
 use super::{down, rightward};
 use core::arch::asm;
 
+/// The step of a path along the row, in place, of 16 candidates. Before it `q4` has the costs from one byte
+/// before the path's on, and after it `q5` has those of the next 16.
+macro_rules! step_along {
+    () => {
+        concat!(
+            "vldrb.u8 q5, [{path}, #1]\n",
+            "vmin.u8 q4, q4, q5\n",
+            "vldrb.u8 q5, [{path}, #15]\n",
+            "vqadd.u8 q4, q4, {step}\n",
+            "vldrb.u8 q0, [{path}]\n",
+            "vmin.u8 q0, q0, q4\n",
+            "vqadd.u8 q0, q0, {off}\n",
+            "vldrb.u8 q1, [{costs}], #16\n",
+            "vsub.i8 q0, q0, {jump}\n",
+            "vadd.i8 q0, q0, q1\n",
+            "vstrb.8 q0, [{path}], #16\n",
+            "vminv.u8 {least}, q0\n",
+        )
+    };
+}
+
 /// The path from above of some pixels: 18 instructions for 16 candidates, and ten for a pixel.
 ///
 /// # Safety
@@ -76,18 +97,7 @@ pub(super) unsafe fn walk_right(run: rightward::Run, groups: usize, least: &mut 
             "mov {least}, #255",
             "vldrb.u8 q4, [{path}, #-1]",
             "3:",
-            "vldrb.u8 q5, [{path}, #1]",
-            "vmin.u8 q4, q4, q5",
-            "vldrb.u8 q5, [{path}, #15]",
-            "vqadd.u8 q4, q4, {step}",
-            "vldrb.u8 q0, [{path}]",
-            "vmin.u8 q0, q0, q4",
-            "vqadd.u8 q0, q0, {off}",
-            "vldrb.u8 q1, [{costs}], #16",
-            "vsub.i8 q0, q0, {jump}",
-            "vadd.i8 q0, q0, q1",
-            "vstrb.8 q0, [{path}], #16",
-            "vminv.u8 {least}, q0",
+            step_along!(),
             "vldrb.u8 q1, [{top}], #16",
             "vadd.i8 q1, q1, q0",
             "vstrb.8 q1, [{sums}], #16",
@@ -154,18 +164,7 @@ pub(super) unsafe fn walk_left(
             "lsl r4, {groups}, #4",
             "sub r4, r4, #1",
             "3:",
-            "vldrb.u8 q5, [{path}, #1]",
-            "vmin.u8 q4, q4, q5",
-            "vldrb.u8 q5, [{path}, #15]",
-            "vqadd.u8 q4, q4, {step}",
-            "vldrb.u8 q0, [{path}]",
-            "vmin.u8 q0, q0, q4",
-            "vqadd.u8 q0, q0, {off}",
-            "vldrb.u8 q1, [{costs}], #16",
-            "vsub.i8 q0, q0, {jump}",
-            "vadd.i8 q0, q0, q1",
-            "vstrb.8 q0, [{path}], #16",
-            "vminv.u8 {least}, q0",
+            step_along!(),
             "vldrb.u8 q1, [{sums}]",
             "vqadd.u8 q1, q1, q0",
             "vstrb.8 q1, [{sums}], #16",

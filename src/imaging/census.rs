@@ -28,11 +28,13 @@ const WIDE8: [Neighbour; 8] = [(0, 0), (0, 4), (0, 8), (2, 2), (2, 6), (4, 0), (
 ///
 /// `rows` are the five rows around the centre row. A code is written for every column of `out` that all of
 /// them have.
+#[cfg_attr(stereopsis_simd, inline(always))]
 pub fn census_plus4(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<4, NARROW>(rows, &PLUS4, out);
 }
 
 /// Computes census codes of 8 bits from the corners and edge centres of 5x5 pixels, as [`census_plus4`] does.
+#[cfg_attr(stereopsis_simd, inline(always))]
 pub fn census_ring8(rows: &[&[u8]; 5], out: &mut [u8]) {
     census::<8, NARROW>(rows, &RING8, out);
 }
@@ -46,7 +48,13 @@ pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
 }
 
 /// Number of columns computed at a time, as vector lanes or in an unrolled loop.
-const LANES: usize = if cfg!(any(stereopsis_simd, stereopsis_vectors)) { 16 } else { 4 };
+const LANES: usize = if cfg!(stereopsis_simd) {
+    32
+} else if cfg!(stereopsis_vectors) {
+    16
+} else {
+    4
+};
 /// Number of columns that a group of codes reads.
 const NARROW: usize = LANES + 2 * 2;
 const WIDE: usize = LANES + 2 * 4;

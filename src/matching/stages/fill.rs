@@ -32,14 +32,17 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
     }
 }
 
+/// Pixels that [`undo`] takes out together.
+const TOGETHER: usize = if cfg!(stereopsis_simd) { 16 } else { 4 };
+
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
 fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
     let undo = |answer: &mut Disparity, flags: PixelFlags| {
         *answer = Disparity::from_raw(answer.raw() | if_filled(flags) as u16);
     };
-    let (answers, rest) = answers.as_chunks_mut::<4>();
-    let (flags, flags_rest) = flags.as_chunks::<4>();
+    let (answers, rest) = answers.as_chunks_mut::<TOGETHER>();
+    let (flags, flags_rest) = flags.as_chunks::<TOGETHER>();
     for (answers, flags) in answers.iter_mut().zip(flags) {
         keep_scalar_loop();
         answers.iter_mut().zip(flags).for_each(|(answer, &flags)| undo(answer, flags));

@@ -24,10 +24,17 @@ pub(in crate::matching::backend) fn push(edges: &mut [u8], lines: [&[u8]; 3], le
     }
     for x in core::iter::once(0).chain(done..=last) {
         keep_scalar_loop();
-        if let Some(edges) = edges.get_mut(x) {
-            let is_edge = sum(lines, last.min(x + 1)).abs_diff(sum(lines, x.saturating_sub(1))) >= least;
-            *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(is_edge);
-        }
+        push_at(edges, lines, x, least);
+    }
+}
+
+/// Moves the bits of column `x` one row on.
+#[inline(always)]
+pub(in crate::matching::backend) fn push_at(edges: &mut [u8], lines: [&[u8]; 3], x: usize, least: u16) {
+    let last = edges.len().saturating_sub(1);
+    if let Some(edges) = edges.get_mut(x) {
+        let is_edge = sum(lines, last.min(x + 1)).abs_diff(sum(lines, x.saturating_sub(1))) >= least;
+        *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(is_edge);
     }
 }
 

@@ -11,8 +11,15 @@ const NO_BOUND: u32 = 1 << 24;
 /// Refuses the answers of a row that spread; an edge is where `row` is set.
 #[inline(never)]
 pub(in crate::matching::backend) fn refuse(work: FatteningWork<'_>) {
-    let FatteningWork { answers, flags, edges, row, slope } = work;
-    mark(answers, Cell::from_mut(edges).as_slice_of_cells(), row, u32::from(slope.raw()));
+    let edges = Cell::from_mut(&mut *work.edges).as_slice_of_cells();
+    mark(work.answers, edges, work.row, u32::from(work.slope.raw()));
+    refuse_marked(work);
+}
+
+/// Refuses the answers that are marked.
+#[inline(always)]
+pub(in crate::matching::backend) fn refuse_marked(work: FatteningWork<'_>) {
+    let FatteningWork { answers, flags, edges, .. } = work;
     for ((answer, flags), edges) in answers.iter_mut().zip(flags).zip(edges) {
         keep_scalar_loop();
         let refused = 0u16.wrapping_sub(u16::from(*edges >> FatteningWork::REFUSED.trailing_zeros()));

@@ -1,48 +1,18 @@
-//! Small gaps along a row closed, pixel by pixel.
-//!
-//! Two passes.
+//! Small gaps along a row closed, pixel by pixel, in two passes.
 
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::FillWork;
 use crate::units::{Disparity, PixelFlags};
 
-/// Fills the gaps of up to `most` pixels whose sides differ by up to `step`.
+/// Fills the gaps of up to `most` pixels whose sides differ by up to `step`: the work is the same for every
+/// picture.
 #[inline(never)]
 pub(in crate::matching::backend) fn fill(work: FillWork<'_>) {
     let FillWork { answers, flags, most, step, .. } = work;
-    // On small cores the work is the same for every picture. Larger processors see at one look that a group
-    // has no gap.
-    if cfg!(stereopsis_simd) {
-        gaps(answers, flags, most, step);
-    } else {
-        let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };
-        let mut left = ToLeft { right: 0, refused: u32::MAX, step: u32::from(step.raw()) };
-        right.through(answers, flags);
-        left.through(answers, flags);
-    }
-}
-
-/// Gap by gap.
-fn gaps(answers: &mut [Disparity], flags: &mut [PixelFlags], most: u8, step: Disparity) {
-    let mut end = 0;
-    while let Some(rest) = answers.get(end..) {
-        let whole = GROUP * rest.chunks(GROUP).take_while(|group| is_whole(group)).count();
-        let Some(more) = rest.iter().skip(whole).position(|answer| answer.is_none()) else { return };
-        let Some(length) = rest.iter().skip(whole + more).position(|answer| !answer.is_none()) else {
-            return;
-        };
-        let begin = end + whole + more;
-        end = begin + length;
-        let sides = (begin.checked_sub(1).and_then(|left| answers.get(left)), answers.get(end));
-        let (Some(&left), Some(&right)) = sides else { continue };
-        if length > usize::from(most) || left.raw().abs_diff(right.raw()) > step.raw() {
-            continue;
-        }
-        if let (Some(gap), Some(flags)) = (answers.get_mut(begin..end), flags.get_mut(begin..end)) {
-            gap.fill(if left.raw() < right.raw() { left } else { right });
-            flags.iter_mut().for_each(|flags| *flags = flags.union(PixelFlags::FILLED));
-        }
-    }
+    let mut right = ToRight { left: u32::from(Disparity::NONE.raw()), length: 0, most: u32::from(most) };
+    let mut left = ToLeft { right: 0, refused: u32::MAX, step: u32::from(step.raw()) };
+    right.through(answers, flags);
+    left.through(answers, flags);
 }
 
 /// To the right: what is in a gap gets the answer on its left, as far as the gap may reach, and the flag.
@@ -90,15 +60,6 @@ impl ToLeft {
             *flags = PixelFlags::from_bits(flags.bits() & !(PixelFlags::FILLED.bits() & self.refused as u8));
         }
     }
-}
-
-/// Pixels that are looked at together.
-const GROUP: usize = 16;
-
-/// Whether all of a group have an answer.
-#[inline(always)]
-fn is_whole(answers: &[Disparity]) -> bool {
-    answers.iter().fold(0, |most, answer| most.max(answer.raw())) < Disparity::NONE.raw()
 }
 
 /// All ones for the number of [`Disparity::NONE`], nothing for a smaller one.

@@ -5,6 +5,8 @@
 pub trait Group: Copy + 'static {
     /// Bytes in a group.
     const LANES: usize;
+    /// Whether a group is as long as a line of the cache: one that is read from another place lies in two.
+    const IS_A_LINE: bool = Self::LANES == 64;
     /// A group in memory, where a word may stand if it is one.
     type Cell: Copy + 'static;
     /// A group anywhere in memory.

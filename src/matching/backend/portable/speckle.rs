@@ -1,7 +1,7 @@
 //! Support counted and speckle dropped, answer by answer.
 
 use super::smooth::of_one;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{keep_loop, once_without_vectors};
 use crate::matching::backend::work::SpeckleWork;
 use crate::matching::memory::rings::LOOK_AHEAD;
 use crate::units::{Disparity, PixelFlags};
@@ -44,30 +44,31 @@ pub(in crate::matching::backend) fn speckle(work: SpeckleWork<'_>) {
 /// An answer of the newest row with the one above it, its surface's length and what its column keeps.
 type Column<'a> = ((&'a Disparity, &'a Disparity), (&'a u16, &'a mut u16));
 
-#[inline(never)]
-#[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
-fn drop_speckle<'a>(
-    columns: impl Iterator<Item = Column<'a>>,
-    out: impl Iterator<Item = (Disparity, &'a mut PixelFlags, &'a mut Disparity)>,
-    step: Disparity,
-    (pixels, run): (u8, u16),
-) {
-    let pixels = Word::from(pixels);
-    for (((here, above), (&length, kept)), (answer, flags, finished)) in columns.zip(out) {
-        keep_loop();
-        let joined = Word::from(of_one(here.raw(), above.raw(), step));
-        let before = Word::from(*kept);
-        let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
-        let count = Word::from(length.min(run)).saturating_add(support).min(0xff);
-        // Each bit stands for the row before now; the highest of both halves goes.
-        let mut rows = (before << 1 & 0b1_1110_1110) | joined;
-        // This row, and those above as far as they are joined.
-        let reached = rows ^ (rows + 1);
-        rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
-        *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
-        let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
-        *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
-        // What has no answer is no speckle.
-        *flags = flags.union(PixelFlags::SPECKLE.when(*finished != answer));
+once_without_vectors! {
+    #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
+    fn drop_speckle<'a>(
+        columns: impl Iterator<Item = Column<'a>>,
+        out: impl Iterator<Item = (Disparity, &'a mut PixelFlags, &'a mut Disparity)>,
+        step: Disparity,
+        (pixels, run): (u8, u16),
+    ) {
+        let pixels = Word::from(pixels);
+        for (((here, above), (&length, kept)), (answer, flags, finished)) in columns.zip(out) {
+            keep_loop();
+            let joined = Word::from(of_one(here.raw(), above.raw(), step));
+            let before = Word::from(*kept);
+            let support = before >> (2 * ROWS) & Word::MIN.wrapping_sub(joined);
+            let count = Word::from(length.min(run)).saturating_add(support).min(0xff);
+            // Each bit stands for the row before now; the highest of both halves goes.
+            let mut rows = (before << 1 & 0b1_1110_1110) | joined;
+            // This row, and those above as far as they are joined.
+            let reached = rows ^ (rows + 1);
+            rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
+            *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
+            let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
+            *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+            // What has no answer is no speckle.
+            *flags = flags.union(PixelFlags::SPECKLE.when(*finished != answer));
+        }
     }
 }

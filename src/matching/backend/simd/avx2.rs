@@ -50,7 +50,7 @@ impl Group for Wide {
 
     #[inline(always)]
     fn key_of_four(code: u8) -> Self {
-        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        let bits = &BITS_APART_OF_FOUR[usize::from(code % 16)];
         safely!(Self(_mm256_broadcastsi128_si256(_mm_loadu_si128(bits.as_ptr().cast()))))
     }
 

@@ -61,7 +61,7 @@ impl Group for Widest {
 
     #[inline(always)]
     fn key_of_four(code: u8) -> Self {
-        let bits = BITS_APART_OF_FOUR.get(usize::from(code)).unwrap_or(&[0; 16]);
+        let bits = &BITS_APART_OF_FOUR[usize::from(code % 16)];
         safely!(Self(_mm512_broadcast_i32x4(_mm_loadu_si128(bits.as_ptr().cast()))))
     }
 

@@ -2,41 +2,46 @@
 
 use super::row_codes::{RowCodes, pixels};
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::portable::candidates::Candidates;
 use crate::matching::backend::portable::group::Group;
 
 /// Moves the sums of all columns one row down.
 #[inline(always)]
-pub(super) fn update<S: WindowParameters, G: Group>(
+pub(super) fn update<S: WindowParameters, G: Group, const CELLS: usize, const SLIDES: bool>(
     stride: usize,
     enter: Option<RowCodes<'_>>,
     leave: Option<RowCodes<'_>>,
     columns: &mut [G::Cell],
 ) {
     let columns = columns.chunks_exact_mut(stride / G::LANES);
-    match (enter.map(|row| pixels(row, stride)), leave.map(|row| pixels(row, stride))) {
+    let candidates = |row: RowCodes<'_>| Candidates::<G, CELLS, SLIDES>::new(row.right, stride);
+    match (enter, leave) {
         (Some(enter), Some(leave)) => {
-            for (column, ((&new_code, new), (&old_code, old))) in columns.zip(enter.zip(leave)) {
+            let (mut news, mut olds) = (candidates(enter), candidates(leave));
+            let rows = pixels(enter, stride).zip(pixels(leave, stride));
+            for (column, ((&new_code, new), (&old_code, old))) in columns.zip(rows) {
                 let (more, less) = (key::<S, G>(new_code), key::<S, G>(old_code));
-                for (sum, (&new, &old)) in column.iter_mut().zip(G::groups(new).iter().zip(G::groups(old))) {
-                    let (more, less) =
-                        (apart::<S, G>(more, G::of_bytes(new)), apart::<S, G>(less, G::of_bytes(old)));
+                for (sum, (&new, &old)) in column.iter_mut().zip(news.next(new).iter().zip(olds.next(old))) {
+                    let (more, less) = (apart::<S, G>(more, new), apart::<S, G>(less, old));
                     *sum = G::of(*sum).minus(less).plus(more).cell();
                 }
             }
         }
         (Some(enter), None) => {
-            for (column, (&code, candidates)) in columns.zip(enter) {
+            let mut news = candidates(enter);
+            for (column, (&code, new)) in columns.zip(pixels(enter, stride)) {
                 let more = key::<S, G>(code);
-                for (sum, &new) in column.iter_mut().zip(G::groups(candidates)) {
-                    *sum = G::of(*sum).plus(apart::<S, G>(more, G::of_bytes(new))).cell();
+                for (sum, &new) in column.iter_mut().zip(news.next(new)) {
+                    *sum = G::of(*sum).plus(apart::<S, G>(more, new)).cell();
                 }
             }
         }
         (None, Some(leave)) => {
-            for (column, (&code, candidates)) in columns.zip(leave) {
+            let mut olds = candidates(leave);
+            for (column, (&code, old)) in columns.zip(pixels(leave, stride)) {
                 let less = key::<S, G>(code);
-                for (sum, &old) in column.iter_mut().zip(G::groups(candidates)) {
-                    *sum = G::of(*sum).minus(apart::<S, G>(less, G::of_bytes(old))).cell();
+                for (sum, &old) in column.iter_mut().zip(olds.next(old)) {
+                    *sum = G::of(*sum).minus(apart::<S, G>(less, old)).cell();
                 }
             }
         }

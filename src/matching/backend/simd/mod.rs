@@ -1,10 +1,14 @@
 //! The dense path in the vectors of 64-bit processors and of WebAssembly.
 //!
 //! * `sse2`, `avx2`, `avx512`, `neon`, `simd128`: registers, with what they have alike from `registers`.
-//! * `windows`, `columns`: sums over windows; `sgm`: costs along paths; `smooth`: answers averaged.
+//! * `windows`, `columns`: sums over windows; `sgm`: costs along paths.
+//! * `smooth`, `edges`, `fattening`, `fill`: the filters of answers, pixels side by side.
 //! * `x86`: code compiled for AVX2 and for AVX-512, chosen when the processor has it.
 
 mod columns;
+mod edges;
+mod fattening;
+mod fill;
 mod row_codes;
 mod sgm;
 mod smooth;
@@ -43,7 +47,8 @@ use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::plain;
 use super::portable::{self, left_right_rows};
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, Guide, PathWork, STEP, SmoothWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
+    SpeckleWork, WindowWork,
 };
 use crate::imaging::{census_plus4, census_ring8};
 use crate::matching::kernel::Kernel;
@@ -121,10 +126,14 @@ impl Isa for Backend {
             return plain::Backend.census::<P>(work);
         }
         let (left, right) = split_mut(work.codes, work.codes.len() / 2);
-        let census = if P::BITS <= 4 { census_plus4 } else { census_ring8 };
-        for (lines, codes) in work.lines.into_iter().zip([left, right]) {
-            census(lines, codes);
-        }
+        self.in_vectors(
+            #[inline(always)]
+            || {
+                for (lines, codes) in work.lines.into_iter().zip([left, right]) {
+                    if P::BITS <= 4 { census_plus4(lines, codes) } else { census_ring8(lines, codes) }
+                }
+            },
+        );
     }
 
     #[inline]
@@ -190,6 +199,43 @@ impl Isa for Backend {
         self.in_vectors(
             #[inline(always)]
             || portable::median::median_in_rows(rows, out),
+        );
+    }
+
+    fn speckle(self, work: SpeckleWork<'_>) {
+        self.in_vectors(
+            #[inline(always)]
+            || portable::speckle::speckle(work),
+        );
+    }
+
+    fn push_edges(self, edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
+        if self == Self::Planes {
+            return plain::Backend.push_edges(edges, lines, least);
+        }
+        self.in_vectors(
+            #[inline(always)]
+            || edges::push(edges, lines, least),
+        );
+    }
+
+    fn refuse_fattening(self, work: FatteningWork<'_>) {
+        if self == Self::Planes {
+            return plain::Backend.refuse_fattening(work);
+        }
+        self.in_vectors(
+            #[inline(always)]
+            || fattening::refuse(work),
+        );
+    }
+
+    fn fill(self, work: FillWork<'_>) {
+        if self == Self::Planes {
+            return plain::Backend.fill(work);
+        }
+        self.in_vectors(
+            #[inline(always)]
+            || fill::fill(work),
         );
     }
 

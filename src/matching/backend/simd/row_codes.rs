@@ -1,11 +1,12 @@
 //! A row's codes, as kernels in vectors read them.
 
 use crate::matching::memory::slices::{part, part_mut, split_mut};
+
 /// The codes of a row in both images.
 #[derive(Clone, Copy)]
 pub(super) struct RowCodes<'a> {
     left: &'a [u8],
-    right: &'a [u8],
+    pub(super) right: &'a [u8],
 }
 
 /// The code of every column with the codes that it is compared with, the farthest first.

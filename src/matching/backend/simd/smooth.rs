@@ -1,12 +1,17 @@
 //! Pixels side by side: pair by pair, as far as both are still of the surface.
 
+use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS, of_one};
 use crate::matching::config::Checks;
-use crate::matching::memory::slices::{part, split_mut};
+use crate::matching::memory::slices::{part, part_mut};
 use crate::units::Disparity;
 
 /// Pixels worked on at a time.
-pub(super) const LANES: usize = 16;
+pub(super) const LANES: usize = 32;
+/// Answers whose ends are looked at together.
+const TOGETHER: usize = 64;
+/// Answers of a short surface.
+const SHORT: usize = 16;
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = MARGIN / 2;
 
@@ -88,8 +93,10 @@ fn averaged<const RADIUS: usize>(
     }
     let mut out = centre;
     for i in 0..LANES {
-        let steps = (i32::from(sum[i] as i16) * i32::from(reciprocal[i] as i16) + (1 << 15)) >> 16;
-        out[i] = centre[i].wrapping_add(steps as u16);
+        // The product's upper half, rounded by its lower one: half-words stay half-words.
+        let product = i32::from(sum[i] as i16) * i32::from(reciprocal[i] as i16);
+        let steps = ((product >> 16) as u16).wrapping_add(sum[i].wrapping_mul(reciprocal[i]) >> 15);
+        out[i] = centre[i].wrapping_add(steps);
     }
     out
 }
@@ -97,28 +104,33 @@ fn averaged<const RADIUS: usize>(
 /// For every answer how many its surface has: surface by surface.
 #[inline(always)]
 fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
-    let (mut begin, mut rest) = (0, lengths);
+    let mut begin = 0;
     let mut end_at = |x: usize| {
-        let (surface, after) = split_mut(core::mem::take(&mut rest), x - begin);
-        surface.fill(surface.len() as u16);
-        (begin, rest) = (x, after);
+        let length = x - begin;
+        let rest = part_mut(lengths, begin..);
+        match rest.first_chunk_mut() {
+            // Most are short. What is written beyond the end is of later surfaces, which are written later.
+            Some(short) if length <= SHORT => *short = [length as u16; SHORT],
+            _ => fill_row(part_mut(rest, ..length), length as u16),
+        }
+        begin = x;
     };
     // Of a group and the answer before it: which are not of one surface with the one before.
-    let pairs = answers.windows(LANES + 1).step_by(LANES);
-    for (x, group) in (1..).step_by(LANES).zip(pairs) {
-        let Some((before, here)) = group.first_chunk::<LANES>().zip(group.last_chunk::<LANES>()) else {
+    let pairs = answers.windows(TOGETHER + 1).step_by(TOGETHER);
+    for (x, group) in (1..).step_by(TOGETHER).zip(pairs) {
+        let Some((before, here)) = group.first_chunk::<TOGETHER>().zip(group.last_chunk::<TOGETHER>()) else {
             break;
         };
         let mut ends = 0;
-        for i in 0..LANES {
-            ends |= u32::from(!of_one(here[i], before[i], step)) << i;
+        for i in 0..TOGETHER {
+            ends |= u64::from(!of_one(here[i], before[i], step)) << i;
         }
         while ends != 0 {
             end_at(x + ends.trailing_zeros() as usize);
             ends &= ends - 1;
         }
     }
-    let grouped = answers.len().saturating_sub(1) / LANES * LANES;
+    let grouped = answers.len().saturating_sub(1) / TOGETHER * TOGETHER;
     for (x, pair) in (grouped + 1..).zip(part(answers, grouped..).windows(2)) {
         if !of_one(pair[1], pair[0], step) {
             end_at(x);

@@ -55,7 +55,13 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
     let enter = enter.map(|row| with_more_before(row, min_disparity, stride, new));
     let leave = leave.map(|row| with_more_before(row, min_disparity, stride, old));
     if let Some(inside) = columns.get_mut(OUTSIDE * stride..) {
-        columns::update::<S, G>(stride, enter, leave, G::cells_mut(inside));
+        let columns = G::cells_mut(inside);
+        // A single group is read as fast as it is moved.
+        if ALL && CELLS > 1 {
+            columns::update::<S, G, CELLS, true>(stride, enter, leave, columns);
+        } else {
+            columns::update::<S, G, CELLS, false>(stride, enter, leave, columns);
+        }
     }
     let Some(Select { disparities, winners, mut unique }) = select else { return };
 

@@ -89,7 +89,11 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
     let Select { winners, unique, .. } = select;
     if ROWS {
         let begin = work.min_disparity.min(work.width);
+        let count = work.width - begin;
         let WinnerRows { below, costs, above, disparities } = winners.rows(begin);
+        // All of one length, which is asked about once.
+        let rows = [below, costs, above, disparities].map(|row| row.get_mut(..count));
+        let [Some(below), Some(costs), Some(above), Some(disparities)] = rows else { return };
         P::select(
             work,
             guide,
@@ -97,9 +101,8 @@ pub(in crate::matching::backend) fn select<P: Passes, const ROWS: bool>(
             #[inline(always)]
             |x, found| {
                 let x = x - begin;
-                let places = (below.get_mut(x), costs.get_mut(x), above.get_mut(x), disparities.get_mut(x));
-                if let (Some(below), Some(cost), Some(above), Some(disparity)) = places {
-                    (*below, *cost, *above, *disparity) =
+                if x < count {
+                    (below[x], costs[x], above[x], disparities[x]) =
                         (found.beside.0, found.cost, found.beside.1, found.disparity);
                 }
             },

@@ -4,6 +4,7 @@ use super::super::features::Features;
 use super::{PathWork, stride};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::candidates::Candidates;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::slices::{chunks, chunks_mut};
 
@@ -14,17 +15,21 @@ pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: b
     features: &Features<'_>,
 ) {
     let Features { left, right, count } = *features;
-    let mut rows = chunks(right, count);
-    let [alongs, acrosses, censuses, brightnesses, least, greatest] =
-        core::array::from_fn(|_| rows.next().unwrap_or(&[]));
     let most = G::splat(work.penalties.cost);
     let stride = stride::<G, CELLS, ALL>(work);
     let columns = chunks_mut(G::cells_mut(work.costs), stride / G::LANES);
+    let mut rows = chunks(right, count);
+    let [alongs, acrosses, censuses, brightnesses, least, greatest] =
+        core::array::from_fn(|_| rows.next().unwrap_or(&[]));
     let candidates = alongs.windows(stride).zip(brightnesses.windows(stride));
     let candidates = candidates.zip(acrosses.windows(stride).zip(censuses.windows(stride)));
     let ranges = least.windows(stride).zip(greatest.windows(stride));
     let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
     let pixels = left.along.iter().zip(pixels);
+    let new = |row| Candidates::<G, CELLS, ALL>::new(row, stride);
+    let (mut along_row, mut brightness_row) = (new(alongs), new(brightnesses));
+    let (mut across_row, mut census_row) = (new(acrosses), new(censuses));
+    let (mut least_row, mut greatest_row) = (new(least), new(greatest));
     for (((column, candidates), range), (&along, (&brightness, (&across, &census)))) in
         columns.zip(candidates).zip(ranges).zip(pixels)
     {
@@ -36,10 +41,14 @@ pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: b
             most,
         };
         let ((alongs, brightness), (across, census)) = candidates;
-        let others = groups::<G>(brightness).zip(groups::<G>(across).zip(groups::<G>(census)));
+        let [brightness, across, census] =
+            [brightness_row.next(brightness), across_row.next(across), census_row.next(census)];
+        let others = brightness.iter().zip(across.iter().zip(census));
         if S::BETWEEN_PIXELS {
-            let ranges = groups::<G>(range.0).zip(groups::<G>(range.1));
-            for (cell, (others, (least, greatest))) in column.iter_mut().zip(others.zip(ranges)) {
+            let (least, greatest) = (least_row.next(range.0), greatest_row.next(range.1));
+            for (cell, (others, (&least, &greatest))) in
+                column.iter_mut().zip(others.zip(least.iter().zip(greatest)))
+            {
                 keep_loop();
                 rest.put::<S>(
                     cell,
@@ -48,7 +57,7 @@ pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: b
                 );
             }
         } else {
-            for (cell, (others, other)) in column.iter_mut().zip(others.zip(groups::<G>(alongs))) {
+            for (cell, (others, &other)) in column.iter_mut().zip(others.zip(along_row.next(alongs))) {
                 keep_loop();
                 rest.put::<S>(cell, along.apart(other), others);
             }
@@ -71,7 +80,7 @@ impl<G: Group> Rest<G> {
         &self,
         cell: &mut G::Cell,
         along: G,
-        (of_brightness, (of_across, of_census)): (G, (G, G)),
+        (&of_brightness, (&of_across, &of_census)): (&G, (&G, &G)),
     ) {
         let brightness = self.brightness.apart(of_brightness);
         let rest =
@@ -79,13 +88,4 @@ impl<G: Group> Rest<G> {
         let cost = along.plus(along).plus(rest).min(self.most);
         *cell = if S::WITHIN_EDGES { cost } else { G::of(*cell).average_up(cost) }.cell();
     }
-}
-
-/// The groups of a pixel's candidates.
-#[inline(always)]
-fn groups<G: Group>(candidates: &[u8]) -> impl Iterator<Item = G> {
-    G::groups(candidates).iter().map(
-        #[inline(always)]
-        |&bytes| G::of_bytes(bytes),
-    )
 }

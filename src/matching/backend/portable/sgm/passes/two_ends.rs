@@ -39,6 +39,7 @@ pub(super) fn select<G: Group, const CELLS: usize>(
     else {
         return;
     };
+    let (Some(along), Some(down)) = (along.get(..width), down.get(..width)) else { return };
     let Some(last) = width.checked_sub(1) else { return };
     // Behind the last column stands the same.
     let (inside, behind) = split_mut(tops, width);

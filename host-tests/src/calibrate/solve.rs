@@ -37,9 +37,13 @@ pub fn solve(
         };
         views.iter().map(of).collect()
     });
-    let [first, second] = [(0, "left"), (1, "right")]
-        .map(|(i, name)| alone(model, &board, &seen[i], size).ok_or(SolveError::Camera(name)));
-    let (first, second) = (first?, second?);
+    let (first, second) = std::thread::scope(|scope| {
+        let first = scope.spawn(|| alone(model, &board, &seen[0], size));
+        let second = alone(model, &board, &seen[1], size);
+        (first.join().unwrap_or_else(|panic| std::panic::resume_unwind(panic)), second)
+    });
+    let first = first.ok_or(SolveError::Camera("left"))?;
+    let second = second.ok_or(SolveError::Camera("right"))?;
     let rms = |camera: &Bundle<'_>| {
         let corners: usize = camera.seen.iter().flatten().map(|seen| seen.corners.len()).sum();
         (camera.cost() / corners as f64).sqrt()

@@ -8,7 +8,6 @@ use stereopsis::geometry::{
     camera::{Camera, ImageSize, StereoRig},
     rectify::{Crop, Rectification, RectifyError},
 };
-use stereopsis::matching::Config;
 use stereopsis_rig::plan::{Plan, Rig, Wanted, describe_search};
 
 /// The distances at which errors are told, m.
@@ -25,22 +24,37 @@ pub struct Asked {
     pub accuracy: f64,
 }
 
-impl Asked {
-    /// Nothing of its own: the least search, and what `stereo plan` asks.
-    const LITTLE: Self = Self { disparities: Config::FEWEST_DISPARITIES, range_m: None, accuracy: 0.05 };
-}
-
 /// What a calibration says, what the rig can tell with the search that is asked, what limits it and what
 /// would help, and what looks wrong: lines of text, the last ones warnings. A rig that cannot be rectified is
 /// refused.
 pub fn describe(calibration: &RawCalibration, asked: &Asked) -> Result<String, RectifyError> {
-    let (text, warnings) = described(&calibration.rig, calibration.format, asked)?;
-    Ok(with_warnings(text, warnings))
+    let RawCalibration { rig, format, .. } = calibration;
+    let rectified = Rectification::new(rig, Crop::Natural, rig.sizes()[0])?;
+    Ok(with_warnings(described(rig, &rectified, format, asked), warnings(rig, &rectified)))
 }
 
-/// What looks wrong with a rig, as [`describe`] says it. A rig that cannot be rectified is refused.
-pub fn warnings(rig: &StereoRig<f64>) -> Result<Vec<String>, RectifyError> {
-    Ok(described(rig, "", &Asked::LITTLE)?.1)
+/// What looks wrong with a rig and its rectification, as [`describe`] says it.
+pub fn warnings(rig: &StereoRig<f64>, rectified: &Rectification<f64>) -> Vec<String> {
+    let mut warnings = Vec::new();
+    for (name, camera) in ["left", "right"].into_iter().zip(rig.cameras()) {
+        camera_warnings(name, camera, rig.sizes()[0], &mut warnings);
+    }
+    warnings.extend(baseline_warning(rig.baseline_m()));
+    let angle = rig.pose().angle_rad().to_degrees();
+    if angle > 10.0 {
+        warnings.push(format!(
+            "the cameras are turned against each other by {angle:.0} degrees: much of both images is lost"
+        ));
+    }
+    let common = rectified.report().common;
+    if common < 0.7 {
+        warnings.push(format!("both cameras see only {:.0} % of the rectified image", 100.0 * common));
+    }
+    let [left, right] = rig.cameras().each_ref().map(|camera| camera.focal_px().0);
+    if (left / right).max(right / left) > 1.1 {
+        warnings.push(format!("the focal lengths of the two cameras differ: {left:.0} and {right:.0} px"));
+    }
+    warnings
 }
 
 /// What the firmware's remaps take, which has the rig in either type; `None` where a remap cannot be.
@@ -50,20 +64,14 @@ fn remap_capacity(rig: &StereoRig<f64>, rectified: &Rectification<f64>) -> Optio
     Some(RemapCapacity::of(rectified).ok()?.max(RemapCapacity::of(&single).ok()?))
 }
 
-/// What a rig is in words, and what looks wrong with it.
-fn described(
-    rig: &StereoRig<f64>,
-    format: &str,
-    asked: &Asked,
-) -> Result<(String, Vec<String>), RectifyError> {
-    let size = rig.sizes()[0];
-    let rectified = Rectification::new(rig, Crop::Natural, size)?;
+/// What a rig is in words.
+fn described(rig: &StereoRig<f64>, rectified: &Rectification<f64>, format: &str, asked: &Asked) -> String {
+    let size = rectified.size();
     let (report, f, b) = (rectified.report(), rectified.camera().focal_px().0, rig.baseline_m());
     let mut text = String::new();
-    let mut warnings = Vec::new();
     let _ = writeln!(text, "{format} calibration, images of {} x {} px", size.width, size.height);
     for (name, camera) in ["left", "right"].into_iter().zip(rig.cameras()) {
-        one(name, camera, size, &mut text, &mut warnings);
+        describe_camera(name, camera, size, &mut text);
     }
     let t = rig.pose().translation();
     let way = if rectified.axis().is_horizontal() { "right of" } else { "below" };
@@ -85,26 +93,13 @@ fn described(
         report.rows[0],
         report.rows[1]
     );
-    if let Some(capacity) = remap_capacity(rig, &rectified) {
+    if let Some(capacity) = remap_capacity(rig, rectified) {
         let kilobytes = capacity.bytes().div_ceil(1024);
         let _ = writeln!(text, "firmware     {capacity} for Crop::Natural at this size, {kilobytes} KB");
     }
     let told = Rig { baseline_m: b, focal_px: f, offset_px: 0.0, width: size.width, height: size.height };
     depths(told, asked, &mut text);
-    warnings.extend(baseline_warning(b));
-    if angle > 10.0 {
-        warnings.push(format!(
-            "the cameras are turned against each other by {angle:.0} degrees: much of both images is lost"
-        ));
-    }
-    if report.common < 0.7 {
-        warnings.push(format!("both cameras see only {:.0} % of the rectified image", 100.0 * report.common));
-    }
-    let [left, right] = rig.cameras().each_ref().map(|camera| camera.focal_px().0);
-    if (left / right).max(right / left) > 1.1 {
-        warnings.push(format!("the focal lengths of the two cameras differ: {left:.0} and {right:.0} px"));
-    }
-    Ok((text, warnings))
+    text
 }
 
 /// What a calibration of rectified images says, and what they can tell with the search that is asked: lines
@@ -165,8 +160,19 @@ fn with_warnings(mut text: String, warnings: Vec<String>) -> String {
     text
 }
 
-/// One camera.
-fn one(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String, warnings: &mut Vec<String>) {
+/// By how many pixels a lens moves the corners of the image; `None` where one of them has no sight.
+fn corners_moved_px(camera: &Camera<f64>, size: ImageSize) -> Option<[f64; 4]> {
+    let (w, h) = (f64::from(size.width) - 1.0, f64::from(size.height) - 1.0);
+    let mut moved_px = [0.0; 4];
+    for (moved_px, corner) in moved_px.iter_mut().zip([[0.0, 0.0], [w, 0.0], [0.0, h], [w, h]]) {
+        let corner = Point2::from(corner);
+        *moved_px = (camera.undistort(&corner).ok()? - corner).norm();
+    }
+    Some(moved_px)
+}
+
+/// One camera in words.
+fn describe_camera(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String) {
     let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
     let (w, h) = (f64::from(size.width) - 1.0, f64::from(size.height) - 1.0);
     let sight = |x: f64, y: f64| camera.unproject(&Point2::new(x, y)).ok();
@@ -179,21 +185,23 @@ fn one(name: &str, camera: &Camera<f64>, size: ImageSize, text: &mut String, war
         angle(sight(0.0, cy), sight(w, cy)),
         angle(sight(cx, 0.0), sight(cx, h))
     );
-    let corners = [(0.0, 0.0), (w, 0.0), (0.0, h), (w, h)];
-    if !camera.lens().is_none() {
-        let moved = |(x, y): (f64, f64)| {
-            Some((camera.undistort(&Point2::new(x, y)).ok()? - Point2::new(x, y)).norm())
-        };
-        match corners.map(moved).into_iter().collect::<Option<Vec<f64>>>() {
-            Some(all) => {
-                let most = all.into_iter().fold(0.0, f64::max);
-                let _ = writeln!(text, "{:<12} the lens moves a corner of the image by {most:.1} px", "");
-            }
-            None => warnings.push(format!(
-                "the {name} lens's coefficients describe no sight for a corner of the image: it stays black"
-            )),
-        }
+    if !camera.lens().is_none()
+        && let Some(moved_px) = corners_moved_px(camera, size)
+    {
+        let most = moved_px.into_iter().fold(0.0, f64::max);
+        let _ = writeln!(text, "{:<12} the lens moves a corner of the image by {most:.1} px", "");
     }
+}
+
+/// What looks wrong with one camera.
+fn camera_warnings(name: &str, camera: &Camera<f64>, size: ImageSize, warnings: &mut Vec<String>) {
+    if !camera.lens().is_none() && corners_moved_px(camera, size).is_none() {
+        warnings.push(format!(
+            "the {name} lens's coefficients describe no sight for a corner of the image: it stays black"
+        ));
+    }
+    let ((fx, fy), (cx, cy)) = (camera.focal_px(), camera.principal_point());
+    let (w, h) = (f64::from(size.width) - 1.0, f64::from(size.height) - 1.0);
     let off = Vector2::new((cx - w / 2.0) / w, (cy - h / 2.0) / h).amax();
     if off > 0.15 {
         warnings.push(format!(

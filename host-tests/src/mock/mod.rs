@@ -17,7 +17,7 @@ pub use error::MockError;
 
 use crate::limits::IMAGE_SIDE;
 use decode::Picture;
-use image::{DynamicImage, Rgb, RgbImage};
+use image::{DynamicImage, GrayImage, Rgb, RgbImage};
 use std::convert::Infallible;
 use std::path::Path;
 use stereopsis::camera::{
@@ -92,6 +92,14 @@ impl MockCamera {
     /// Whether the file had an alpha channel, which was dropped.
     pub fn had_alpha(&self) -> bool {
         self.had_alpha
+    }
+
+    /// The picture in grey with 8 bits, of colours their luma: 16-bit samples lose their low significant bits.
+    pub fn grey_picture(&self) -> GrayImage {
+        let (width, height) = (u32::from(self.format.width), u32::from(self.format.height));
+        let grey = (self.format.pixel == PixelFormat::Grey8).then(|| self.bytes.clone());
+        let image = grey.and_then(|bytes| GrayImage::from_raw(width, height, bytes));
+        image.unwrap_or_else(|| DynamicImage::from(self.picture()).into_luma8())
     }
 
     /// The picture with 8 bits a channel, for display: 16-bit samples lose their low significant bits.

@@ -155,7 +155,7 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let result = solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views)
         .map_err(|e| failed(&e))?;
     let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
-    let wrong = warnings(&result.rig).map_err(|e| failed(&e))?;
+    let wrong = warnings(&result.rig, &rectified);
 
     for i in result.outliers() {
         let [left, right] = &found[i].paths;

@@ -78,8 +78,8 @@ impl Grid {
         self.nodes.len()
     }
 
-    /// Takes corners out that are not where those beside them expect them, the worst first: near the border
-    /// of a picture, or of the board, a corner of a marker may stand for one that is not seen.
+    /// Takes corners out that are not where those beside them expect them, the worst first, as an edge that
+    /// noise made may lead to.
     pub fn prune(&mut self) {
         let worst = |grid: &Self| {
             let off = grid.nodes.keys().map(|&at| (grid.off(at), at));
@@ -88,6 +88,12 @@ impl Grid {
         while let Some((_, at)) = worst(self) {
             self.nodes.remove(&at);
         }
+    }
+
+    /// Prunes closer: near the border of a picture, or of the board, a corner of a marker may stand for one
+    /// that is not seen.
+    pub fn prune_marked(&mut self) {
+        self.prune();
         // Once more, all at a time: one that is wrong would take those beside it along.
         let off: Vec<_> = self.nodes.keys().copied().filter(|&at| self.off(at) > 0.15).collect();
         for at in off {

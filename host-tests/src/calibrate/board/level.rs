@@ -33,11 +33,13 @@ impl Level {
     /// Means of two by two.
     fn halved(&self) -> Self {
         let (width, height) = (self.width / 2, self.height / 2);
-        let pixels = (0..width * height).map(|i| {
-            let (x, y) = (2 * (i % width) as isize, 2 * (i / width) as isize);
-            (self.at(x, y) + self.at(x + 1, y) + self.at(x, y + 1) + self.at(x + 1, y + 1)) / 4.0
-        });
-        Self { width, height, pixels: pixels.collect(), scale: self.scale / 2.0 }
+        let mut pixels = Vec::with_capacity(width * height);
+        for two in self.pixels.chunks_exact(2 * self.width.max(1)) {
+            let (above, below) = two.split_at(self.width);
+            let blocks = above.chunks_exact(2).zip(below.chunks_exact(2));
+            pixels.extend(blocks.map(|(a, b)| (a[0] + a[1] + b[0] + b[1]) / 4.0));
+        }
+        Self { width, height, pixels, scale: self.scale / 2.0 }
     }
 
     fn doubled(&self) -> Self {
@@ -78,11 +80,6 @@ impl Level {
             }
         }
         Self { pixels, ..self }
-    }
-
-    /// Whether it has the picture's own size.
-    pub fn is_full(&self) -> bool {
-        self.scale == 1.0
     }
 
     /// A pixel, or the nearest one inside.

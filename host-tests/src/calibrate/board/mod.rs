@@ -28,6 +28,7 @@ pub use markers::Markers;
 
 use image::GrayImage;
 use nalgebra::Point2;
+use std::cell::LazyCell;
 
 /// The inner corners of a chessboard: where four squares meet.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -131,6 +132,8 @@ impl BoardError {
 
 /// The largest side of a picture that is searched at once, px: more makes the search slow and no surer.
 const LARGEST: u32 = 1100;
+/// The least larger side of a picture's half that is searched before the picture itself, px.
+const COARSE: f64 = 300.0;
 
 /// Finds what is seen of a board with markers: eight corners or more. The markers say which corners they are,
 /// so it does not matter how the board is turned.
@@ -143,7 +146,7 @@ pub fn find_marked(picture: &GrayImage, pattern: Pattern, markers: &Markers) -> 
         let links = links::links(&level, &corners, links::Search::MARKED);
         for mut grid in grid::grids(&corners, &links) {
             most = most.max(grid.len());
-            grid.prune();
+            grid.prune_marked();
             let found = markers.locate(pattern, &grid, &level, &full).unwrap_or_default();
             if found.len() > best.len() {
                 best = found;
@@ -179,7 +182,13 @@ fn scales(picture: &GrayImage) -> impl Iterator<Item = f64> {
 /// right, or as it does in `like`, another camera's picture of the same moment.
 pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Result<Board, BoardError> {
     let (mut most, mut linked, mut other, mut larger) = (0, 0, None, None);
-    for scale in scales(picture) {
+    let full = LazyCell::new(|| level::Level::new(picture, 1.0));
+    let mut scales: Vec<f64> = scales(picture).collect();
+    // Most boards show at half of the size, which has a quarter of the pixels.
+    if f64::from(picture.width().max(picture.height())) * scales.get(1).unwrap_or(&0.0) >= COARSE {
+        scales.swap(0, 1);
+    }
+    for scale in scales {
         let level = level::Level::new(picture, scale);
         let corners = corners::find(&level);
         let links = links::links(&level, &corners, links::Search::PLAIN);
@@ -188,6 +197,7 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
             if grid.len() > linked {
                 (linked, other) = (grid.len(), grid.board_size());
             }
+            grid.prune();
             // Corners that links missed are looked for where they are needed.
             let found = match grid.block(pattern) {
                 Err(None) => {
@@ -200,12 +210,10 @@ pub fn find(picture: &GrayImage, pattern: Pattern, like: Option<&Board>) -> Resu
             match found {
                 Ok(block) => {
                     let found = order::order(&block, pattern, like);
-                    let places = found.into_iter().map(|p| level.to_picture(&p)).collect();
-                    let refined = match level.is_full() {
-                        true => refine::refine(&level, pattern, places),
-                        false => refine::refine(&level::Level::new(picture, 1.0), pattern, places),
-                    };
-                    if let Some(corners) = refined {
+                    let places = found.into_iter().map(|p| level.to_picture(&p));
+                    let saddle = |place| full.saddle(&place, 0.5 / scale).unwrap_or(place);
+                    let places = places.map(saddle).collect();
+                    if let Some(corners) = refine::refine(&full, pattern, places) {
                         return Ok(Board { corners, numbers: (0..pattern.corners()).collect() });
                     }
                 }

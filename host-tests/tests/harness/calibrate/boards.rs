@@ -3,6 +3,7 @@
 use super::{CLOSE_STANDS, SIZE, STANDS, markers, pattern, rig, stand};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::{Point2, Point3};
+use stereopsis::geometry::camera::Camera;
 use stereopsis_host::calibrate::board::{Board, BoardError, Pattern, find, find_marked};
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::scene::Random;
@@ -70,6 +71,28 @@ fn boards_are_found_when_blurred_small_large_or_cut() {
             truth.iter().map(|p| Point2::from(p.coords.add_scalar(0.5) * scale).map(|x| x - 0.5)).collect();
         let (mean, most) = apart(&found.corners, &as_found(pattern, truth, &found));
         assert!(mean < 0.22 * scale && most < 0.6 * scale, "{axis:?} {place:?} {blur}: {mean} {most}");
+    }
+}
+
+/// Noise makes edges that lead to no corner of the board: none of these stays in its grid.
+#[test]
+fn boards_are_found_blurred_in_noise() {
+    let pattern = pattern(9, 6);
+    let camera = BoardCamera::new(Camera::new(165.0, 166.0, 158.0, 121.0).expect("a camera"), SIZE);
+    for seed in 1..4 {
+        let mut random = Random::new(seed);
+        for (axis, [x, y, z]) in STANDS {
+            let [board, _] = stand(pattern, axis, [x, y, 0.9 * z], 0.03);
+            // Some reach over the border.
+            let Some(truth) = camera.corners(pattern, &board) else { continue };
+            let mut picture = imageops::blur(&camera.picture(pattern, &board, 0.0, &mut random), 2.0);
+            for Luma([grey]) in picture.pixels_mut() {
+                *grey = (f64::from(*grey) + 12.0 * random.gauss()).round().clamp(0.0, 255.0) as u8;
+            }
+            let found = find(&picture, pattern, None).unwrap_or_else(|e| panic!("{seed} {axis:?}: {e}"));
+            let (mean, most) = apart(&found.corners, &as_found(pattern, truth, &found));
+            assert!(mean < 0.8 && most < 1.8, "{seed} {axis:?}: {mean} {most}");
+        }
     }
 }
 

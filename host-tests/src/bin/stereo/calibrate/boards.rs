@@ -1,7 +1,6 @@
 //! The boards in pictures of pairs, and what is wrong where there are none.
 
 use crate::failure::Failure;
-use image::{DynamicImage, GrayImage};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use stereopsis::camera::LineSource;
@@ -135,7 +134,7 @@ fn look(
 ) -> Result<Seen, Failure> {
     let camera = MockCamera::open(path)?;
     let (width, height) = (camera.format().width, camera.format().height);
-    let grey: GrayImage = DynamicImage::from(camera.picture()).into_luma8();
+    let grey = camera.grey_picture();
     let board = match markers {
         Some(markers) => board::find_marked(&grey, pattern, markers),
         None => board::find(&grey, pattern, like),

@@ -2,6 +2,7 @@
 
 use crate::support::{mono, stereo};
 use image::GrayImage;
+use nalgebra::Matrix3;
 use stereopsis::motion::odometry::State;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
 use stereopsis_host::odometry::trajectory::Trajectory;
@@ -52,6 +53,18 @@ fn a_drive_with_an_open_shutter() {
     let trajectory = stereo(street.rig(), &frames);
     let share = off(&trajectory, &street, 1.0);
     assert!(share < 0.02, "{:.3} % of the way", 100.0 * share);
+}
+
+/// What rounding leaves of a rotation would grow by more than three times with every frame that is predicted
+/// from the one before.
+#[test]
+fn motions_are_rotations_after_many_frames() {
+    let (street, frames) = drive(24, (240, 120), 0.0);
+    for (i, step) in stereo(street.rig(), &frames).steps.iter().enumerate() {
+        let rotation = step.motion.rotation();
+        let off = (rotation.transpose() * rotation - Matrix3::identity()).amax();
+        assert!(off < 1e-13, "{i}: {off}");
+    }
 }
 
 /// `cargo test --release -p stereopsis-host --test motion -- --ignored --nocapture` prints the figures.

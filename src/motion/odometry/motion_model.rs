@@ -95,9 +95,10 @@ impl<T: Real> MotionModel<T> {
         motion
     }
 
-    /// The map has moved into the frame of a camera at this pose.
+    /// The map has moved into the frame of a camera at this pose. Motions are predicted from motions: what
+    /// rounding leaves of a rotation would grow by more than three times with each.
     pub fn rebase(&mut self, pose: &Pose<T>, velocity: Pose<T>) {
-        self.reported_pose = pose.inverse().then(&self.reported_pose);
-        self.velocity = Some(velocity);
+        self.reported_pose = pose.inverse().then(&self.reported_pose).orthonormal();
+        self.velocity = Some(velocity.orthonormal());
     }
 }

@@ -139,7 +139,6 @@ fn wrong(tree: &Path, folder: &Path, spots: &BTreeMap<&str, Vec<Spot>>) -> Outco
             continue;
         }
         last = message["rendered"].as_str().unwrap_or_default().replace('\n', " ");
-        let before = wrong.len();
         for span in message["spans"].as_array().into_iter().flatten() {
             let at = span["byte_start"].as_u64().unwrap_or_default() as usize;
             let Some(spots) = span["file_name"].as_str().and_then(|file| spots.get(file)) else { continue };
@@ -147,9 +146,6 @@ fn wrong(tree: &Path, folder: &Path, spots: &BTreeMap<&str, Vec<Spot>>) -> Outco
             let of = |range: fn(&Spot) -> &Range<usize>| spots.iter().rfind(|spot| range(spot).contains(&at));
             let found = of(|spot| &spot.mutant).or_else(|| of(|spot| &spot.code));
             wrong.extend(found.map(|spot| spot.number));
-        }
-        if wrong.len() == before {
-            wrong.extend(named(&last));
         }
     }
     if !check.status.success() && wrong.is_empty() {
@@ -160,12 +156,6 @@ fn wrong(tree: &Path, folder: &Path, spots: &BTreeMap<&str, Vec<Spot>>) -> Outco
         )));
     }
     Ok(wrong)
-}
-
-/// The mutants that an error shows: of a match that lacks an arm the compiler shows another arm and points at
-/// what is matched.
-fn named(error: &str) -> impl Iterator<Item = u32> {
-    error.split("mutant::on(").skip(1).filter_map(|rest| rest.split(')').next()?.parse().ok())
 }
 
 /// Builds the test programs: those of several packages at once, so that none builds what another one needs

@@ -7,8 +7,10 @@ use serde::Deserialize;
 use std::ops::Range;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
-use syn::{Arm, Block, Expr, ExprBinary, ExprStruct, ExprUnary, Pat};
-use syn::{ImplItemConst, ImplItemFn, ItemConst, ItemFn, TraitItemConst, TraitItemFn};
+use syn::{Arm, Block, Expr, ExprBinary, ExprMatch, ExprStruct, ExprUnary, Pat};
+use syn::{
+    ImplItemConst, ImplItemFn, ItemConst, ItemFn, ReturnType, Signature, TraitItemConst, TraitItemFn, Type,
+};
 
 /// A mutant as `cargo mutants --list --json` prints it.
 #[derive(Clone, Deserialize)]
@@ -68,7 +70,7 @@ struct Edit {
 /// Weaves numbered mutants of one file into its source.
 pub fn weave(source: &str, mutants: &[(u32, &Mutant)]) -> syn::Result<Woven> {
     let file = syn::parse_file(source)?;
-    let mut seek = Seek { source, edits: Vec::new(), mutants: Vec::new() };
+    let mut seek = Seek { source, edits: Vec::new(), mutants: Vec::new(), has_rest: false };
     for (number, mutant) in mutants {
         seek.mutants.push((*number, mutant, offset(source, &mutant.span.start)));
     }
@@ -123,6 +125,8 @@ struct Seek<'a> {
     /// Numbers, mutants, and the bytes that their code begins at.
     mutants: Vec<(u32, &'a Mutant, usize)>,
     edits: Vec<Edit>,
+    /// Whether the innermost match has an arm for whatever the others leave.
+    has_rest: bool,
 }
 
 impl Seek<'_> {
@@ -140,7 +144,11 @@ impl Seek<'_> {
         }
     }
 
-    fn function(&mut self, block: &Block) {
+    fn function(&mut self, signature: &Signature, block: &Block) {
+        // Something simple and the code are of two types.
+        if matches!(&signature.output, ReturnType::Type(_, given) if matches!(**given, Type::ImplTrait(_))) {
+            return;
+        }
         let Some(first) = block.stmts.first() else { return };
         let inside = block.brace_token.span.open().byte_range().end;
         for (number, replacement) in self.of("FnValue", &first.span().byte_range()) {
@@ -152,18 +160,18 @@ impl Seek<'_> {
 
 impl<'ast> Visit<'ast> for Seek<'_> {
     fn visit_item_fn(&mut self, node: &'ast ItemFn) {
-        self.function(&node.block);
+        self.function(&node.sig, &node.block);
         visit::visit_item_fn(self, node);
     }
 
     fn visit_impl_item_fn(&mut self, node: &'ast ImplItemFn) {
-        self.function(&node.block);
+        self.function(&node.sig, &node.block);
         visit::visit_impl_item_fn(self, node);
     }
 
     fn visit_trait_item_fn(&mut self, node: &'ast TraitItemFn) {
         if let Some(block) = &node.default {
-            self.function(block);
+            self.function(&node.sig, block);
         }
         visit::visit_trait_item_fn(self, node);
     }
@@ -209,6 +217,13 @@ impl<'ast> Visit<'ast> for Seek<'_> {
         visit::visit_expr_struct(self, node);
     }
 
+    fn visit_expr_match(&mut self, node: &'ast ExprMatch) {
+        let is_rest = |arm: &Arm| matches!(arm.pat, Pat::Wild(_));
+        let outer = std::mem::replace(&mut self.has_rest, node.arms.iter().any(is_rest));
+        visit::visit_expr_match(self, node);
+        self.has_rest = outer;
+    }
+
     fn visit_arm(&mut self, node: &'ast Arm) {
         let pattern = node.pat.span().byte_range();
         let guard =
@@ -217,7 +232,10 @@ impl<'ast> Visit<'ast> for Seek<'_> {
             let mutants = self.of("MatchArmGuard", guard);
             self.either(mutants, guard, str::to_owned);
         }
-        for (number, _) in self.of("MatchArm", &node.span().byte_range()) {
+        // Without an arm for the rest, and one with a guard is none, a match that lacks an arm does not compile.
+        let whole = node.span().byte_range();
+        let gone = if self.has_rest { self.of("MatchArm", &whole) } else { Vec::new() };
+        for (number, _) in gone {
             let not = format!("!crate::mutant::on({number})");
             self.edits.push(match &guard {
                 Some(guard) => {
@@ -279,6 +297,23 @@ mod tests {
             &woven.text[of(1).mutant.start..of(1).code.end],
             "(if crate::mutant::on(1) { 1 / a } else { 1 * a })"
         );
+    }
+
+    #[test]
+    fn what_is_of_a_hidden_type_stays() {
+        let source = "fn f() -> impl Iterator<Item = u8> {\n    0..9\n}\n";
+        let mutant = mutant("FnValue", "::std::iter::empty()", 2, 5);
+        assert_eq!(weave(source, &[(0, &mutant)]).expect("it parses").left_out, [0]);
+    }
+
+    #[test]
+    fn an_arm_that_the_match_needs_stays() {
+        let source = "fn f(a: Option<u8>) -> u8 {\n    match a {\n        _ if g() => 0,\n        \
+                      Some(x) => x,\n        None => 1,\n    }\n}\n";
+        let mutants = [mutant("MatchArm", "", 4, 9), mutant("MatchArmGuard", "true", 3, 14)];
+        let woven = weave(source, &(0..).zip(&mutants).collect::<Vec<_>>()).expect("it parses");
+        assert_eq!(woven.left_out, [0]);
+        assert!(woven.text.contains("on(1) { true }"), "{}", woven.text);
     }
 
     #[test]

@@ -152,3 +152,28 @@ fn three_deviations_px<T: Real>(f: &Fundamental<T>, seen: &[Correspondence<T>], 
     }
     (T::count(median) / per_px * T::of(3.0 * 1.4826)).min(threshold_px).max(threshold_px * T::of(0.1))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_median_distance_says_how_wide_the_noise_is() {
+        let rectified = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
+        let f = Fundamental::from_matrix(&rectified).expect("rank 2");
+        // Distances of so many 64ths of the threshold of 2 px.
+        let of = |steps: [f64; 6]| {
+            let rows = steps.map(|steps| steps / 32.0 * core::f64::consts::SQRT_2);
+            three_deviations_px(&f, &rows.map(|by| Correspondence::new(9.0, 4.0, 7.0, 4.0 + by)), 2.0)
+        };
+        // Three of the five within the threshold are below 7 of 64 steps.
+        let found = of([3.5, 6.5, -6.5, 20.5, 30.5, 70.0]);
+        assert!((found - 7.0 / 32.0 * 3.0 * 1.4826).abs() < 1e-9, "{found}");
+        // Of an even number the lower half.
+        let found = of([3.5, -6.5, 20.5, 30.5, 70.0, 80.0]);
+        assert!((found - 7.0 / 32.0 * 3.0 * 1.4826).abs() < 1e-9, "{found}");
+        // The threshold at most, a tenth of it at least.
+        assert_eq!(of([60.5; 6]), 2.0);
+        assert!((of([0.5; 6]) - 0.2).abs() < 1e-12);
+    }
+}

@@ -83,3 +83,52 @@ impl<T: Real> Frame<T> {
         Matrix3::new(l / a, -b / (a * d), cx, o, l / d, cy, o, o, l)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SKEWED: Frame<f64> = Frame { a: 0.01, b: -0.002, d: 0.03, cx: 320.0, cy: 250.0 };
+
+    #[test]
+    fn all_ways_are_those_of_the_matrix() {
+        let (m, pixel) = (SKEWED.matrix(), Point2::new(17.0, 401.0));
+        let there = m * pixel.to_homogeneous();
+        assert!((SKEWED.apply(pixel).to_homogeneous() - there).amax() < 1e-12);
+        assert!((SKEWED.inverse() * m - Matrix3::identity()).amax() < 1e-12);
+        let line = Vector3::new(0.3, -0.7, 0.4);
+        assert!((SKEWED.of_line(&line) - m.tr_mul(&line)).amax() < 1e-12);
+        let linear = m.fixed_view::<2, 2>(0, 0);
+        let (x, y) = SKEWED.steepest(line.x, line.y);
+        assert!((Vector2::new(x, y) - linear * linear.transpose() * line.xy()).amax() < 1e-15);
+    }
+
+    #[test]
+    fn points_of_both_images_have_their_mean_at_the_origin_and_one_scale() {
+        // One image has the corners of a square of 20 px, the other one of 60 px, elsewhere.
+        let seen = [(0, 0), (0, 20), (20, 0), (20, 20)].map(|(u, v)| {
+            let (u, v) = (f64::from(u), f64::from(v));
+            Correspondence::new(u + 7.0, v - 5.0, 3.0 * u - 100.0, 3.0 * v)
+        });
+        let [first, second] = Frame::of_points(&seen).expect("points that are apart");
+        let corners = seen.map(|s| [first.apply(s.first), second.apply(s.second)]);
+        for image in 0..2 {
+            let sum = corners.iter().fold(Vector2::zeros(), |sum, both| sum + both[image].coords);
+            assert!(sum.amax() < 1e-12, "{sum}");
+        }
+        let [near, far] = [0, 1].map(|image| corners[3][image].coords.norm());
+        assert!((far / near - 3.0).abs() < 1e-12, "{near} {far}");
+        assert!(((near * near + far * far) / 2.0 - 2.0).abs() < 1e-12, "{near} {far}");
+    }
+
+    #[test]
+    fn points_that_are_one_to_rounding_have_no_frame() {
+        let seen = |apart: f64, other: f64| {
+            [-1.0, 1.0].map(|side| Correspondence::new(1.0 + side * apart, 1.0, side * other, 2.0))
+        };
+        assert!(Frame::of_points(&seen(1e-3, 1.0)).is_some());
+        assert!(Frame::of_points(&seen(1e-16, 1.0)).is_none());
+        assert!(Frame::of_points(&seen(1.0, 1e-16)).is_none());
+        assert!(Frame::of_points(&seen(1e200, 1.0)).is_none(), "the sums overflow");
+    }
+}

@@ -39,3 +39,17 @@ pub(crate) fn weight_and_gain<T: Real>(share: T) -> (T, T) {
     let weight = left * left;
     (weight, weight * left)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn weights_and_gains_fall_from_one_to_zero_at_the_width() {
+        let loss = Biweight::new(2.0_f64);
+        assert_eq!([loss.width_squared, loss.widened(4.0).width_squared], [9.0, 144.0]);
+        // 3/4 squared, and to the third.
+        assert_eq!(weight_and_gain(0.25), (0.5625, 0.421875));
+        assert_eq!([weight_and_gain(0.0), weight_and_gain(1.0)], [(1.0, 1.0), (0.0, 0.0)]);
+    }
+}

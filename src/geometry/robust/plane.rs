@@ -133,3 +133,125 @@ pub(super) fn one_sense<T: Real>(f: &Matrix3<T>, sample: &[Correspondence<T>; 7]
     let first = senses.next();
     senses.all(|sense| Some(sense) == first)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A homography, and the epipole in the first image that completes it to an F.
+    fn wall() -> (Matrix3<f64>, Vector3<f64>) {
+        (Matrix3::new(1.1, 0.02, 12.0, -0.03, 0.95, -7.0, 1e-4, -2e-4, 1.0), Vector3::new(0.9, 0.3, 2e-3))
+    }
+
+    fn fundamental() -> Matrix3<f64> {
+        let (h, epipole) = wall();
+        product(&skew(&epipole), &h)
+    }
+
+    /// A match that is off the wall by `parallax` along its epipolar line.
+    fn seen(i: usize, parallax: f64) -> Correspondence<f64> {
+        let (h, epipole) = wall();
+        let (x, y) = ((i * 37 % 11) as f64 * 20.0, ((7 * i + 3) * i % 13) as f64 * 15.0);
+        let there = h * Vector3::new(x, y, 1.0) + epipole * parallax;
+        Correspondence::new(there.x / there.z, there.y / there.z, x, y)
+    }
+
+    #[test]
+    fn the_distance_is_the_larger_one_of_both_images() {
+        let to = |matrix: &Matrix3<f64>, from: Point2<f64>, to: Point2<f64>| {
+            let there = matrix * from.to_homogeneous();
+            (there.xy() / there.z - to.coords).norm_squared()
+        };
+        let mut larger = [0; 2];
+        // The first image as it is, and half as large.
+        for (scale, i) in [1.0, 0.5].into_iter().flat_map(|scale| (0..9).map(move |i| (scale, i))) {
+            let h = Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0)) * wall().0;
+            let (plane, back) = (Plane::new(h), h.try_inverse().expect("of rank three"));
+            let mut s = seen(i, (i as f64 - 4.5) * 3.0);
+            s.first.coords *= scale;
+            let both = [to(&h, s.second, s.first), to(&back, s.first, s.second)];
+            larger[usize::from(both[1] > both[0])] += 1;
+            let (expected, found) = (both[0].max(both[1]), plane.distance_squared_px2(&s));
+            assert!((found - expected).abs() < 1e-9, "{i}: {found} {expected}");
+            assert!(plane.holds(&s, found * 1.001) && !plane.holds(&s, found * 0.999), "{i}");
+        }
+        assert!(larger.iter().all(|&count| count > 0), "{larger:?}");
+    }
+
+    #[test]
+    fn three_matches_and_f_have_their_plane() {
+        let plane = Plane::through(&fundamental(), [0, 1, 2].map(|i| seen(i, 0.0))).expect("an epipole");
+        for i in 0..11 {
+            let squared = plane.distance_squared_px2(&seen(i, 0.0));
+            assert!(squared < 1e-12, "{i}: {squared}");
+        }
+        assert!(Plane::through(&Matrix3::zeros(), [0, 1, 2].map(|i| seen(i, 0.0))).is_none());
+    }
+
+    #[test]
+    fn any_five_of_seven_have_their_plane_and_four_have_none() {
+        for (one, two) in (0..7).flat_map(|one| (one + 1..7).map(move |two| (one, two))) {
+            let off = |places: &[usize]| {
+                core::array::from_fn(|i| {
+                    seen(i, if places.contains(&i) { 20.0 + 9.0 * i as f64 } else { 0.0 })
+                })
+            };
+            let plane = |places: &[usize]| Plane::of_sample(&fundamental(), &off(places), 0.01);
+            let found = plane(&[one, two]).expect("five are on it");
+            assert!(found.distance_squared_px2(&seen(9, 0.0)) < 1e-9, "{one} {two}");
+            let three = (0..7).find(|i| ![one, two].contains(i)).expect("another");
+            assert!(plane(&[one, two, three]).is_none(), "{one} {two} {three}");
+        }
+    }
+
+    #[test]
+    fn what_is_on_the_plane_fits_it() {
+        // Nine on the wall by up to a pixel, from which the plane of three of them is off, and three off it.
+        let near = |i: usize| {
+            let mut s = seen(i, 0.0);
+            s.first.x += (i * 7 % 5) as f64 * 0.4 - 0.8;
+            s.first.y += (i * 4 % 7) as f64 * 0.3 - 0.9;
+            s
+        };
+        let all: [_; 12] = core::array::from_fn(|i| if i < 9 { near(i) } else { seen(i, 90.0) });
+        let frames = Frame::of_points(&all).expect("points that are apart");
+        let (h, _) = wall();
+        let plane = Plane::new(h);
+        let (fitted, count) = plane.fitted(&all, &frames, 4.0);
+        assert_eq!([plane.count(&all, 1, 4.0), plane.count(&all, 5, 4.0), count], [9, 2, 9]);
+        let squares =
+            |plane: &Plane<f64>| all[..9].iter().map(|s| plane.distance_squared_px2(s)).sum::<f64>();
+        assert!(squares(&fitted) < 0.9 * squares(&plane), "{} {}", squares(&fitted), squares(&plane));
+        // Four are no more than determine it: it stays.
+        let (same, count) = plane.fitted(&all[5..], &frames, 4.0);
+        assert!(count == 4 && same.matrix == plane.matrix);
+        let (other, count) = plane.fitted(&all[4..], &frames, 4.0);
+        assert!(count == 5 && other.matrix != plane.matrix);
+    }
+
+    #[test]
+    fn points_before_both_cameras_have_one_sense() {
+        let f = fundamental();
+        let before = core::array::from_fn(|i| seen(i, 10.0 * i as f64));
+        assert!(one_sense(&f, &before));
+        // Behind the first camera: the third coordinate has the other sign.
+        for behind in 0..7 {
+            let mut sample = before;
+            sample[behind] = seen(behind, -2000.0);
+            assert!(!one_sense(&f, &sample), "{behind}");
+        }
+        assert!(!one_sense(&Matrix3::zeros(), &before));
+    }
+
+    #[test]
+    fn the_epipole_is_orthogonal_to_all_columns() {
+        // Each two of the columns may be parallel, and so those that are left must do.
+        let (a, b) = (Vector3::new(1.0_f64, 2.0, -1.0), Vector3::new(0.5, -1.0, 3.0));
+        for columns in [[a, b, a], [a, a, b], [b, a, a], [a, b, a + b]] {
+            let epipole = left_null(&Matrix3::from_columns(&columns)).expect("of rank two");
+            assert!((epipole.norm() - 1.0).abs() < 1e-12);
+            assert!(columns.iter().all(|column| column.dot(&epipole).abs() < 1e-12));
+        }
+        assert!(left_null(&Matrix3::from_columns(&[a, a, a])).is_none());
+    }
+}

@@ -73,4 +73,33 @@ mod tests {
         });
         assert_eq!(sampler.size, 100);
     }
+
+    #[test]
+    fn the_set_grows_as_the_equations_say() {
+        // T_n samples of n, of ten thousand of all; one more as soon as they are drawn, rounded up.
+        let of_all = |n: usize| (0..5).fold(1e4, |t, i| t * (n - i) as f64 / (60 - i) as f64);
+        let mut sampler = Sampler::<5>::new(Sampling::Ordered, 7, 60);
+        let (mut due, mut size) = (1.0, 5);
+        for drawn in 0..12_000 {
+            sampler.next(drawn);
+            if sampler.size > size {
+                // In f32, which rounds up to one more here and there.
+                assert!((f64::from(drawn) - due).abs() <= 2.0, "{size}: {drawn} {due}");
+                size += 1;
+                due = f64::from(drawn) + (of_all(size) - of_all(size - 1)).floor() + 1.0;
+            }
+            assert_eq!(sampler.size, size);
+        }
+        assert_eq!(size, 60);
+    }
+
+    #[test]
+    fn uniform_samples_are_of_all() {
+        let mut sampler = Sampler::<3>::new(Sampling::Uniform, 7, 60);
+        let mut seen = [false; 60];
+        for drawn in 0..400 {
+            sampler.next(drawn).iter().for_each(|&place| seen[place] = true);
+        }
+        assert!(seen.iter().all(|&seen| seen));
+    }
 }

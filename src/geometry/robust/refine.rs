@@ -173,3 +173,126 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
         (size > least && size.is_finite()).then(|| damping * T::of(16.0))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Point2;
+
+    fn frames() -> [Frame<f64>; 2] {
+        Frame::of_points(&seen(0.0)).expect("points that are apart")
+    }
+
+    /// An estimate, in the frames.
+    fn estimate() -> Factored<f64> {
+        let matrix = Matrix3::new(0.1, -0.3, 0.4, 0.2, 0.05, -1.0, -0.3, 0.9, 0.1);
+        Factored::new(&matrix).expect("two singular values")
+    }
+
+    /// Places all over two images, not near any line.
+    fn places() -> [Correspondence<f64>; 12] {
+        core::array::from_fn(|i| {
+            let (u, v) = ((i * 37 % 11) as f64 * 20.0, (i * 53 % 13) as f64 * 15.0);
+            Correspondence::new(u, v, 1.1 * u - (i % 5) as f64, 0.9 * v + 40.0)
+        })
+    }
+
+    /// The same, moved up or down in the first image to `off` px from the estimate's lines or less.
+    fn seen(off: f64) -> [Correspondence<f64>; 12] {
+        let places = places();
+        if off == 0.0 {
+            return places;
+        }
+        let [first, second] = frames();
+        let (m, matrix) = (first.matrix(), estimate().matrix());
+        core::array::from_fn(|i| {
+            let Correspondence { first: p, second: q } = places[i];
+            let line = m.tr_mul(&(matrix * second.apply(q).to_homogeneous()));
+            let v = -(line.x * p.x + line.z) / line.y;
+            let off = off * ((i % 5) as f64 - 2.0) / 2.0;
+            Correspondence { first: Point2::new(p.x, v + off), second: q }
+        })
+    }
+
+    fn along(axis: usize, by: f64) -> [f64; FREE] {
+        core::array::from_fn(|i| if i == axis { by } else { 0.0 })
+    }
+
+    #[test]
+    fn the_equations_are_slope_and_curvature_of_the_loss() {
+        let (seen, frames, f) = (seen(0.02), frames(), estimate());
+        let loss = Biweight { width_squared: 4.0 };
+        let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+        let cost = |step: &[f64; FREE]| problem.last_equations(&f.moved(step), None).expect("a cost").cost;
+        let equations = problem.equations(&f, None).expect("equations");
+        assert_eq!(equations.cost, cost(&[0.0; FREE]));
+        assert!(equations.cost < -11.9 && equations.cost > -12.0, "{}", equations.cost);
+        for i in 0..FREE {
+            // Of -(1 - e / w^2)^3 the slope is -6 / w^2 times the weighted residual's.
+            let slope = (cost(&along(i, 1e-6)) - cost(&along(i, -1e-6))) / 2e-6;
+            let (expected, size) = (-1.5 * equations.right[i], equations.matrix[i][i].sqrt());
+            assert!((slope - expected).abs() < 1e-3 * size, "{i}: {slope} {expected} {size}");
+            for j in 0..FREE {
+                let by = |other: f64| {
+                    let (one, two) = (along(i, 1e-5), along(j, other));
+                    cost(&core::array::from_fn(|k| one[k] + two[k]))
+                };
+                // Twice the curvature 3 / w^2, of squares of sums and of differences.
+                let differences = by(1e-5) - by(-1e-5) - (cost(&along(j, 1e-5)) - cost(&along(j, -1e-5)));
+                let curvature = differences / 2e-10 / 1.5;
+                let size = size * equations.matrix[j][j].sqrt();
+                let element = equations.matrix[i][j];
+                assert!((element - curvature).abs() < 0.02 * size, "{i} {j}: {element} {curvature} {size}");
+                assert_eq!(element, equations.matrix[j][i]);
+            }
+        }
+    }
+
+    #[test]
+    fn an_essential_matrix_moves_by_five_numbers() {
+        let (seen, frames, f) = (seen(0.02), frames(), estimate().essential());
+        let loss = Biweight { width_squared: 1e6 };
+        let of =
+            |kind| SampsonLoss { kind, seen: &seen, frames: &frames, loss, every: 1 }.equations(&f, None);
+        let all = of(Matrix::Fundamental).expect("equations");
+        let five = of(Matrix::Essential).expect("equations");
+        assert!(five.right[..5] == all.right[..5] && five.right[5..] == [0.0; 2]);
+        for (i, j) in (0..FREE).flat_map(|i| (0..FREE).map(move |j| (i, j))) {
+            let expected = if i.max(j) < 5 { all.matrix[i][j] } else { f64::from(u8::from(i == j)) };
+            assert_eq!(five.matrix[i][j], expected, "{i} {j}");
+        }
+    }
+
+    #[test]
+    fn every_third_counts_where_that_is_asked_for() {
+        let (seen, frames) = (seen(0.02), frames());
+        let cost = |seen: &[Correspondence<f64>], every: usize| {
+            let loss = Biweight { width_squared: 4.0 };
+            let problem = SampsonLoss { kind: Matrix::Fundamental, seen, frames: &frames, loss, every };
+            problem.equations(&estimate(), None).expect("equations").cost
+        };
+        let third = [seen[0], seen[3], seen[6], seen[9]];
+        assert_eq!(cost(&seen, 3), cost(&third, 1));
+    }
+
+    #[test]
+    fn what_is_off_by_more_than_the_width_has_no_weight() {
+        let (seen, frames) = (seen(3.0), frames());
+        let problem = |width_squared: f64| {
+            let loss = Biweight { width_squared };
+            let problem =
+                SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+            let mut count = 0;
+            problem.for_each_beside(&estimate().matrix(), |beside| {
+                let share = beside.residual * beside.residual * beside.per_steep / width_squared;
+                let left = 1.0 - share;
+                assert!((beside.gain - left.powi(3)).abs() < 1e-12);
+                assert!((beside.weight - left.powi(2)).abs() < 1e-12);
+                count += 1;
+            });
+            count
+        };
+        // Two of them are on their lines.
+        assert_eq!([1e-9, 1e9].map(problem), [2, 12]);
+    }
+}

@@ -129,3 +129,104 @@ impl<T: Real> LeastSquares<T, 6> for Reprojection<'_, T> {
         None
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Point2, Point3, Rotation3};
+
+    /// A camera with skew, and where it stands.
+    fn camera_and_pose() -> (Matrix3<f64>, Pose<f64>) {
+        let turn = Rotation3::new(Vector3::new(0.1, -0.2, 0.3));
+        let pose = Pose::new(turn.into_inner(), Vector3::new(0.5, -0.1, 0.2)).expect("a rotation");
+        (Matrix3::new(500.0, 3.0, 320.0, 0.0, 510.0, 240.0, 0.0, 0.0, 1.0), pose)
+    }
+
+    /// Landmarks whose pixels are off by up to `off` px, the last one behind the camera.
+    fn landmarks(off: f64) -> [Landmark<f64>; 9] {
+        let (k, pose) = camera_and_pose();
+        core::array::from_fn(|i| {
+            let at = |n: usize, m: usize| (i * n % m) as f64 / m as f64 - 0.4;
+            let z = if i == 8 { -2.0 } else { 3.0 + at(5, 7) };
+            let point = Vector3::new(2.0 * at(3, 8), at(5, 9), z);
+            let seen = k * point;
+            let pixel = Point2::new(seen.x / z + off * at(4, 7), seen.y / z - off * at(2, 5));
+            Landmark { world: pose.transform(&Point3::from(point)), pixel }
+        })
+    }
+
+    fn problem(landmarks: &[Landmark<f64>]) -> Reprojection<'_, f64> {
+        let (k, _) = camera_and_pose();
+        let inverse = k.try_inverse().expect("focal lengths");
+        Reprojection { landmarks, k, inverse, loss: Biweight { width_squared: 25.0 } }
+    }
+
+    fn along(axis: usize, by: f64) -> [f64; 6] {
+        core::array::from_fn(|i| if i == axis { by } else { 0.0 })
+    }
+
+    #[test]
+    fn the_right_side_is_the_slope_of_the_gain() {
+        let (landmarks, (_, pose)) = (landmarks(8.0), camera_and_pose());
+        let problem = problem(&landmarks);
+        let equations = problem.equations(&pose, None).expect("no bound");
+        let gain = |pose: &Pose<f64>| problem.gain(pose, 0.0).expect("more than nothing");
+        assert!((equations.cost + gain(&pose)).abs() < 1e-12);
+        for axis in 0..6 {
+            let moved = |by: f64| gain(&pose.moved(&along(axis, by)));
+            let slope = (moved(1e-6) - moved(-1e-6)) / 2e-6;
+            // Of (1 - e / w^2)^3 the slope is 6 / w^2 times the weighted residual's.
+            let expected = equations.right[axis] * 6.0 / 25.0;
+            assert!((slope - expected).abs() < 1e-5 * (1.0 + expected.abs()), "{axis}: {slope} {expected}");
+        }
+    }
+
+    #[test]
+    fn the_matrix_is_the_curvature_of_the_squares() {
+        let (landmarks, (_, pose)) = (landmarks(0.0), camera_and_pose());
+        let problem = problem(&landmarks);
+        let equations = problem.equations(&pose, None).expect("no bound");
+        let squares = |step: &[f64; 6]| problem.within(&pose.moved(step), 5.0).1;
+        for (i, row) in equations.matrix.iter().enumerate() {
+            for (j, &element) in row.iter().enumerate() {
+                // Of squares of x_i + x_j and of x_i - x_j.
+                let by = |other: f64| {
+                    let (one, two) = (along(i, 1e-5), along(j, other));
+                    squares(&core::array::from_fn(|k| one[k] + two[k]))
+                };
+                let expected = (by(1e-5) - by(-1e-5)) / 4e-10;
+                let size = (equations.matrix[i][i] * equations.matrix[j][j]).sqrt();
+                assert!((element - expected).abs() < 1e-3 * size, "{i} {j}: {element} {expected}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_cannot_be_better_is_broken_off() {
+        let (landmarks, (_, pose)) = (landmarks(8.0), camera_and_pose());
+        let problem = problem(&landmarks);
+        let gain = problem.gain(&pose, 0.0).expect("more than nothing");
+        assert!(problem.gain(&pose, gain - 1e-9).is_some() && problem.gain(&pose, gain).is_none());
+        let equations = |best: f64| problem.equations(&pose, Some(-best));
+        assert!(equations(gain - 1e-9).is_some() && equations(gain + 1e-9).is_none());
+    }
+
+    #[test]
+    fn squares_are_of_pixels_and_none_behind_the_camera() {
+        let (landmarks, (k, pose)) = (landmarks(8.0), camera_and_pose());
+        let problem = problem(&landmarks);
+        let (mut count, mut sum) = (0, 0.0);
+        for landmark in &landmarks[..8] {
+            let seen = k * pose.inverse_transform(&landmark.world).coords;
+            let squared = (seen.xy() / seen.z - landmark.pixel.coords).norm_squared();
+            let found = problem.squared(&pose, landmark).expect("before the camera");
+            assert!((found - squared).abs() < 1e-9, "{found} {squared}");
+            if squared <= 9.0 {
+                (count, sum) = (count + 1, sum + squared);
+            }
+        }
+        assert_eq!(problem.squared(&pose, &landmarks[8]), None);
+        let (found, squares) = problem.within(&pose, 3.0);
+        assert!(found == count && (squares - sum).abs() < 1e-9 && (1..8).contains(&count), "{found} {count}");
+    }
+}

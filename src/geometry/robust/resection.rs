@@ -203,3 +203,16 @@ impl<T: Real> Estimator<MINIMUM> for Search<'_, T> {
         drawn >= self.needed
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn as_many_samples_as_the_share_of_right_ones_asks_for() {
+        let config = RobustConfig { miss_probability: 0.01, ..RobustConfig::new(1.0_f64) };
+        // ln 0.01 / ln (1 - 1/8) is 34.5; with all right one is enough, with one in a thousand
+        // 4.6 thousand millions are too many to count.
+        assert_eq!([0.5, 1.0, 0.001].map(|share| enough(share, &config)), [35, 1, u32::MAX]);
+    }
+}

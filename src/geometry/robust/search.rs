@@ -204,7 +204,56 @@ fn common_divisor(mut a: usize, mut b: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::stride;
+    use super::*;
+
+    /// Matches of places that are on no line in either image.
+    fn scattered() -> [Correspondence<f64>; 12] {
+        core::array::from_fn(|i| {
+            let (u, v) = ((i * 37 % 11) as f64 * 20.0, (i * 53 % 13) as f64 * 15.0);
+            Correspondence::new(u, v, u - (i % 5) as f64, v + 40.0)
+        })
+    }
+
+    fn search(seen: &[Correspondence<f64>]) -> Search<'_, f64, MINIMUM> {
+        let frames = Frame::of_points(seen).expect("points that are apart");
+        Search::new(Matrix::Fundamental, seen, frames, &RobustConfig::new(1.0))
+    }
+
+    #[test]
+    fn a_miss_is_as_probable_as_that_all_samples_had_an_outlier() {
+        let seen = scattered();
+        let mut search = search(&seen);
+        // Of 12 there are 10 inliers: seven of them in (10 .. 4) / (12 .. 6) of the samples.
+        search.score.inliers = 10;
+        let all_good = (5.0 * 4.0) / (12.0 * 11.0) * 0.99;
+        for drawn in [0, 1, 2, 5, 16, 37] {
+            let expected = (1.0_f64 - all_good).powi(drawn);
+            assert!((search.miss(drawn as u32) - expected).abs() < 1e-12, "{drawn}");
+        }
+        // The probability that is asked for is enough, after sixteen samples.
+        search.miss_probability = search.miss(20);
+        assert_eq!([19, 20, 21].map(|drawn| search.has_enough(drawn)), [false, true, true]);
+        search.miss_probability = 0.999;
+        assert_eq!([15, 16].map(|drawn| search.has_enough(drawn)), [false, true]);
+        // With seven inliers of twelve one sample of all is theirs, with six none.
+        search.score.inliers = 7;
+        assert!((search.miss(1) - (1.0 - 0.99 / 792.0)).abs() < 1e-12);
+        search.score.inliers = 6;
+        assert_eq!(search.miss(9), 1.0);
+    }
+
+    #[test]
+    fn a_matrix_of_the_frames_is_that_of_the_pixels() {
+        let seen = scattered();
+        let search = search(&seen);
+        let f = Matrix3::new(0.1, -0.4, 2.0, 0.3, 0.2, -7.0, -3.0, 6.0, 5.0);
+        let of_pixels = search.in_pixels(&f);
+        for (s, (p, q)) in seen.iter().zip(search.normalised(&[0, 1, 2, 3, 4, 5, 6])) {
+            let there = (f * q.to_homogeneous()).dot(&p.to_homogeneous());
+            let here = (of_pixels * s.second.to_homogeneous()).dot(&s.first.to_homogeneous());
+            assert!((there - here).abs() < 1e-9, "{there} {here}");
+        }
+    }
 
     #[test]
     fn a_round_meets_all() {

@@ -120,3 +120,88 @@ pub(super) fn sampson<T: Real>(f: &Matrix3<T>, s: &Correspondence<T>) -> (T, T) 
     let y = f.m12 * p.x + f.m22 * p.y + f.m32;
     (residual * residual, line.x * line.x + line.y * line.y + x * x + y * y)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// F of a rectified pair: Sampson's distance is the difference of the rows over the root of two.
+    const RECTIFIED: Matrix3<f64> = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
+    /// Up to 3 px, or 4.24 rows.
+    const LOSS: Biweight<f64> = Biweight { width_squared: 9.0 };
+
+    /// Matches whose rows differ by so much.
+    fn off_by<const N: usize>(rows: [f64; N]) -> [Correspondence<f64>; N] {
+        rows.map(|rows| Correspondence::new(rows * 10.0, 50.0, 30.0, 50.0 + rows))
+    }
+
+    #[test]
+    fn the_distance_is_the_residual_over_its_gradient() {
+        let f = Matrix3::new(0.1, -0.4, 2.0, 0.3, 0.2, -7.0, -3.0, 6.0, 5.0);
+        let at = [31.0, -12.0, 25.0, 8.0];
+        let residual = |[u, v, x, y]: [f64; 4]| (f * Vector3::new(x, y, 1.0)).dot(&Vector3::new(u, v, 1.0));
+        let steep = (0..4).fold(0.0, |sum, k| {
+            let moved = |by: f64| residual(core::array::from_fn(|i| at[i] + if i == k { by } else { 0.0 }));
+            let slope = (moved(0.5) - moved(-0.5)) / 1.0;
+            sum + slope * slope
+        });
+        let (squared, divisor) = sampson(&f, &Correspondence::new(at[0], at[1], at[2], at[3]));
+        assert!((squared.sqrt() - residual(at).abs()).abs() < 1e-9 && (divisor - steep).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_score_is_the_sum_of_the_gains_in_any_order() {
+        let seen = off_by([0.0, 1.0, -2.0, 3.0, 9.0, -4.0, 4.25]);
+        // Five of them within the width: (1 - rows^2 / 18)^3.
+        let gain: f64 =
+            [0.0, 1.0, 4.0, 9.0, 16.0].iter().map(|squared| (1.0 - squared / 18.0_f64).powi(3)).sum();
+        for order in [(0, 1), (3, 1), (6, 2), (2, 5)] {
+            let score = |best| Sprt::new().score(&RECTIFIED, &seen, LOSS, best, order);
+            let found = score(0.0).expect("more than nothing");
+            assert!((found.gain - gain).abs() < 1e-12 && found.inliers == 5, "{order:?}");
+            assert!(score(gain - 1e-9).is_some() && score(gain + 1e-9).is_none(), "{order:?}");
+        }
+    }
+
+    #[test]
+    fn odds_of_a_hundred_drop_an_estimate() {
+        // Nine in ten agree with a good estimate and one in twenty with a bad one: an outlier makes a bad one
+        // 9.5 times as likely, two of them 90 times, three more than a hundred times.
+        let mut sprt = Sprt::new();
+        sprt.learn(0.9);
+        let two = [9.0, 9.0, 0.0, 9.0, 0.0, 9.0, 0.0, 0.0, 0.0, 0.0];
+        let three = [9.0, 9.0, 9.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert!(sprt.score(&RECTIFIED, &off_by(two), LOSS, 0.0, (0, 1)).is_some());
+        assert!(sprt.score(&RECTIFIED, &off_by(three), LOSS, 0.0, (0, 1)).is_none());
+        // The other way round there are inliers first.
+        assert!(sprt.score(&RECTIFIED, &off_by(three), LOSS, 0.0, (9, 9)).is_some());
+    }
+
+    #[test]
+    fn what_is_dropped_says_how_many_agree_with_a_bad_estimate() {
+        let mut sprt = Sprt::new();
+        sprt.learn(0.9);
+        // Five that were tried, of which one agrees, besides two of forty.
+        let seen = off_by([9.0, 9.0, 0.0, 9.0, 9.0, 9.0, 9.0, 9.0]);
+        assert!(sprt.score(&RECTIFIED, &seen, LOSS, 0.0, (0, 1)).is_none());
+        assert_eq!(sprt.chance, (3.0, 45.0));
+        assert_eq!(sprt.bad, 3.0 / 45.0);
+        // What cannot become better than the best is dropped, too: after three of four.
+        let mut sprt = Sprt::new();
+        assert!(sprt.score(&RECTIFIED, &off_by([0.0, 9.0, 9.0, 0.0]), LOSS, 2.0, (0, 1)).is_none());
+        assert_eq!(sprt.chance, (3.0, 43.0));
+    }
+
+    #[test]
+    fn nothing_is_dropped_where_bad_estimates_agree_as_often() {
+        let mut sprt = Sprt::<f64>::new();
+        // A twentieth, less than six fifths of which are no more.
+        sprt.learn(0.059);
+        assert_eq!((sprt.inlier_ratio, sprt.outlier_ratio), (1.0, 1.0));
+        sprt.learn(0.061);
+        assert!((sprt.inlier_ratio - 0.05 / 0.061).abs() < 1e-12);
+        assert!((sprt.outlier_ratio - 0.95 / 0.939).abs() < 1e-12);
+        sprt.learn(1.0);
+        assert!((sprt.outlier_ratio - 950.0).abs() < 1e-9, "no estimate is sure");
+    }
+}

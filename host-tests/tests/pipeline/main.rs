@@ -4,6 +4,7 @@
 //! * `push`: lines that the caller pushes; `waited`: rows that a task awaits.
 //! * `faults`: the pipeline before a source with every fault, held against the injector's record; `changing`:
 //!   that source; `unsure`: faults where answers are refused as unsure.
+//! * `numbers`: frame numbers, row numbers and time stamps by hand.
 //! * `winners`: rows from a model of the block of gates; `mapped`: the same behind registers in memory and
 //!   a ring.
 
@@ -11,6 +12,7 @@ mod bands;
 mod changing;
 mod faults;
 mod mapped;
+mod numbers;
 mod push;
 mod unsure;
 mod waited;

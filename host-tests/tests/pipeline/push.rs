@@ -2,8 +2,11 @@
 //! error.
 
 use image::GrayImage;
-use stereopsis::matching::{Block, Checks, Config, Fast, MatchError, Method, Row, Sgm, SgmEdge, SgmLean};
-use stereopsis::pipeline::{Pipeline, PushError};
+use stereopsis::camera::LineFault;
+use stereopsis::matching::{
+    Block, Checks, Config, Fast, Kernel, MatchError, Method, Row, Sgm, SgmEdge, SgmLean,
+};
+use stereopsis::pipeline::{Guarded, Pipeline, PushError};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::scene::SceneCamera;
 use stereopsis_host::scene::pattern::Pattern;
@@ -168,4 +171,124 @@ fn a_wrong_line_changes_nothing() {
         rows.push(row.into());
     }
     assert!(rows == expected);
+}
+
+type Guard = Guarded<Fast, W, D>;
+
+/// The rows of a guarded pipeline whose caller reports line `lost` as lost, and the pipeline.
+fn guarded(pair: &(GrayImage, GrayImage), lost: Option<(usize, LineFault)>) -> (Vec<Kept>, Box<Guard>) {
+    let (width, height) = (pair.0.width() as u16, pair.0.height() as u16);
+    let mut pipeline = Box::new(Guard::new());
+    pipeline.start(&Config::for_method::<Fast>(width, height, 16)).expect("the configuration is valid");
+    pipeline.begin().expect("it is started");
+    let mut rows = Vec::new();
+    for (y, (left, right)) in lines(pair).enumerate() {
+        let row = match lost {
+            Some((line, fault)) if line == y => pipeline.push_lost(fault),
+            _ => pipeline.push(left, right),
+        };
+        let row = row.expect("a line of the frame").map(Kept::from);
+        assert_eq!(row.is_some(), y >= Any::<Fast>::LATENCY, "line {y}");
+        assert_eq!(pipeline.row().map(Kept::from), row);
+        rows.extend(row);
+    }
+    while let Some(row) = pipeline.flush().expect("all lines are in") {
+        rows.push(row.into());
+    }
+    assert!(pipeline.flush().is_ok_and(|row| row.is_none()), "the frame stays over");
+    (rows, pipeline)
+}
+
+#[test]
+fn lines_pushed_into_a_guarded_pipeline_give_the_same_rows() {
+    let pair = pair(40, 50);
+    let expected = pushed(&mut started::<Fast>(&Config::for_method::<Fast>(40, 50, 16)), &pair);
+    let (rows, pipeline) = guarded(&pair, None);
+    assert!(rows == expected);
+    let counters = pipeline.counters();
+    assert_eq!((counters.frames, counters.frames_whole, counters.rows, counters.lines), (1, 1, 50, 50));
+}
+
+#[test]
+fn a_line_that_the_caller_lost_is_counted_and_flagged() {
+    let pair = pair(40, 80);
+    for (line, fault) in
+        [(0, LineFault::Dropped), (5, LineFault::Torn), (30, LineFault::Late), (79, LineFault::Stale)]
+    {
+        // The line above, or a black one above which there is none.
+        let mut above = pair.clone();
+        for picture in [&mut above.0, &mut above.1] {
+            for x in 0..40 {
+                let grey = if line == 0 { 0 } else { picture.get_pixel(x, line as u32 - 1).0[0] };
+                picture.put_pixel(x, line as u32, image::Luma([grey]));
+            }
+        }
+        let expected = pushed(&mut started::<Fast>(&Config::for_method::<Fast>(40, 80, 16)), &above);
+        let (rows, pipeline) = guarded(&pair, Some((line, fault)));
+        let flagged =
+            line.saturating_sub(Any::<Fast>::LATENCY)..=(line + pipeline.reach_down()).min(rows.len() - 1);
+        for (y, (row, expected)) in rows.iter().zip(&expected).enumerate() {
+            let is_flagged = row.flags.iter().all(|flags| flags.contains(PixelFlags::DAMAGED));
+            assert_eq!(is_flagged, flagged.contains(&y), "line {line}, row {y}");
+            let is_away = y.abs_diff(line) > 2 + Any::<Fast>::LATENCY;
+            assert!(!is_away || row.disparities == expected.disparities, "line {line}, row {y}");
+            assert!(is_flagged || row == expected, "line {line}, row {y}");
+        }
+        let counters = pipeline.counters();
+        let of_faults =
+            [counters.lines_dropped, counters.lines_torn, counters.lines_late, counters.lines_stale];
+        let is_it = |other| u32::from(fault == other);
+        let faults = [LineFault::Dropped, LineFault::Torn, LineFault::Late, LineFault::Stale];
+        assert_eq!(of_faults, faults.map(is_it));
+        assert_eq!((counters.lines, counters.frames_damaged, pipeline.lost_lines()), (79, 1, 1));
+        assert_eq!(counters.rows_damaged as usize, flagged.count());
+    }
+}
+
+#[test]
+fn pixels_that_a_camera_did_not_see_lose_their_answers() {
+    let pair = pair(60, 30);
+    let config = Config::for_method::<Fast>(60, 30, 16);
+    let (mut plain, mut masked) = (started::<Fast>(&config), started::<Fast>(&config));
+    let mut guard = Box::new(Guard::new());
+    guard.start(&config).expect("the configuration is valid");
+    plain.begin().and(masked.begin()).and(guard.begin()).expect("they are started");
+    let mut lost = 0;
+    for (left, right) in lines(&pair) {
+        let Some(expected) = plain.push(left, right).expect("a line of the frame").map(Kept::from) else {
+            assert!(masked.push(left, right).is_ok() && guard.push(left, right).is_ok());
+            continue;
+        };
+        assert!(masked.push(left, right).is_ok() && guard.push(left, right).is_ok());
+        // Nothing is known of the masks.
+        masked.mask(|_, _| false);
+        assert_eq!(masked.row().map(|row| row.disparities().to_vec()).as_ref(), Some(&expected.disparities));
+        // The left camera saw nothing of the columns 20 to 39.
+        let valid = |row: u16, [left, right]: [&mut [u8]; 2]| {
+            assert_eq!(row, expected.index);
+            left.fill(1);
+            right.fill(1);
+            left[20..40].fill(0);
+            true
+        };
+        masked.mask(valid);
+        guard.mask(valid);
+        let row = Kept::from(masked.row().expect("a row"));
+        assert_eq!(guard.row().map(Kept::from).as_ref(), Some(&row));
+        for (x, (found, own)) in row.disparities.iter().zip(&expected.disparities).enumerate() {
+            let is_seen = !(20..40).contains(&x);
+            assert_eq!(*found, if is_seen { *own } else { Disparity::NONE }, "column {x}");
+            lost += usize::from(!is_seen && own.is_some());
+        }
+    }
+    assert!(lost > 50, "{lost}");
+}
+
+#[test]
+fn a_kernel_that_the_machine_lacks_is_refused() {
+    let (mut pipeline, mut guarded) = (Box::new(Any::<Fast>::new()), Box::new(Guard::new()));
+    let choose = |kernel| (pipeline.set_kernel(kernel), guarded.set_kernel(kernel));
+    let chosen = Kernel::ALL.map(choose);
+    assert!(chosen.iter().all(|(one, other)| one == other));
+    assert!(chosen.iter().any(|(one, _)| one.is_ok()) && chosen.iter().any(|(one, _)| one.is_err()));
 }

@@ -108,6 +108,39 @@ fn the_rows_are_the_methods_own() {
 }
 
 #[test]
+fn an_error_says_what_happened_and_where() {
+    for (error, text) in [
+        (WinnerError::Device("the bus is stuck"), "the bus is stuck"),
+        (WinnerError::Search, "the device cannot do this search"),
+        (WinnerError::Late { row: 3 }, "the winners of row 3 are late"),
+        (WinnerError::Count { row: 3, given: 70 }, "row 3 has 70 winners"),
+        (WinnerError::Damaged { row: 3, column: 8 }, "the winner in column 8 of row 3 is damaged"),
+        (WinnerError::LineLength, "a line of the device had a wrong length"),
+        (WinnerError::FrameCutOff, "the device's frame was cut off by the next one"),
+    ] {
+        assert_eq!([error.to_string(), WinnerPipelineError::from(error).to_string()], [text; 2]);
+    }
+}
+
+#[test]
+fn a_borrowed_device_gives_the_same_rows() {
+    let (config, pictures) = (config::<Fast>(), pictures(3));
+    let mut owned =
+        WinnerRegisters::new(MockBlock::new(&twin::Method::FAST, &config, &pictures.0, &pictures.1));
+    let mut device = &mut owned;
+    let mut pipeline = Box::new(WinnerPipeline::<Fast, W, D>::new());
+    pipeline.start(&config, &mut device).expect("a search that the block does");
+    for _ in 0..2 {
+        assert!(
+            frame(&mut pipeline, &mut device, &pictures).expect("rows") == own::<Fast>(&config, &pictures)
+        );
+    }
+    // Its refusals are the device's, too.
+    let refused: Result<(), Failed> = Err(WinnerError::Search.into());
+    assert_eq!(pipeline.start(&Config { min_disparity: 256, ..config }, &mut device), refused);
+}
+
+#[test]
 fn a_lost_row_costs_its_answers_and_flags_what_rests_on_it() {
     let (config, pictures) = (config::<Block>(), pictures(4));
     let block = MockBlock::new(&twin::Method::BLOCK, &config, &pictures.0, &pictures.1);

@@ -45,7 +45,8 @@ pub fn judge(programs: &[Program], number: u32, limit_s: u64) -> Outcome<Verdict
     for program in programs {
         let path = program.path.display().to_string();
         let failed = |e: std::io::Error| Failure::new(format!("{path}: {e}"));
-        let bounds = format!("ulimit -t {limit_s} -v {MOST_KIB}; exec \"$0\" \"$@\"");
+        // One bound at a time: a shell may take no more.
+        let bounds = format!("ulimit -t {limit_s} && ulimit -v {MOST_KIB} && exec \"$0\" \"$@\"");
         let mut test = Command::new("sh");
         test.args(["-c", &bounds, &path]).args(program.words).args(["--test-threads", "1"]);
         // The long lists take a share: what is seen there alone is not seen here.

@@ -64,7 +64,12 @@ const MODULES: [Module; 4] = [
         folder: "src/pipeline/",
         but: &[],
         tests: &[
-            Test::new("stereopsis-host", "pipeline", &[]),
+            Test::new(
+                "stereopsis-host",
+                "pipeline",
+                &["push", "numbers", "bands", "mapped", "winners", "waited"],
+            ),
+            Test::new("stereopsis-host", "pipeline", &["faults", "unsure"]),
             Test::new("stereopsis-host", "matching", &["threads"]),
             Test::new("stereopsis-model", "kernels", &["frames", "external", "moved"]),
         ],

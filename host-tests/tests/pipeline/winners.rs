@@ -119,6 +119,8 @@ fn an_error_says_what_happened_and_where() {
         (WinnerError::FrameCutOff, "the device's frame was cut off by the next one"),
     ] {
         assert_eq!([error.to_string(), WinnerPipelineError::from(error).to_string()], [text; 2]);
+        // After what is said of a row the frame goes on.
+        assert_eq!(error.is_of_one_row(), text.contains("row 3"), "{text}");
     }
 }
 
@@ -176,6 +178,7 @@ fn a_lost_row_costs_its_answers_and_flags_what_rests_on_it() {
         assert!(matches!(frame(&mut pipeline, &mut device, &pictures), Err(WinnerPipelineError::Source(_))));
         device.bus().faults.clear();
         assert!(frame(&mut pipeline, &mut device, &pictures).expect("rows") == expected, "the next frame");
+        assert_eq!(pipeline.lost(), 0);
     }
 }
 

@@ -80,6 +80,7 @@ const MODULES: [Module; 4] = [
         but: &[],
         tests: &[
             Test::new("stereopsis", Test::OWN, &["imaging"]),
+            Test::new("stereopsis-host", "camera", &["formats"]),
             Test::new("stereopsis-host", "imaging", &[]),
             Test::new("stereopsis-model", "kernels", &["list", "pictures"]),
         ],

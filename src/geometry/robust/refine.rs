@@ -276,6 +276,22 @@ mod tests {
     }
 
     #[test]
+    fn the_distance_is_sampsons_in_pixels() {
+        let (seen, frames, f) = (seen(3.0), frames(), estimate());
+        let loss = Biweight { width_squared: 1e9 };
+        let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+        let in_pixels = frames[0].matrix().tr_mul(&(f.matrix() * frames[1].matrix()));
+        let mut of_seen = seen.iter();
+        problem.for_each_beside(&f.matrix(), |beside| {
+            let s = of_seen.next().expect("one for each");
+            let (squared, steep) = crate::geometry::robust::sprt::sampson(&in_pixels, s);
+            let (expected, found) = (squared / steep, beside.residual * beside.residual * beside.per_steep);
+            assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+        });
+        assert!(of_seen.next().is_none());
+    }
+
+    #[test]
     fn what_is_off_by_more_than_the_width_has_no_weight() {
         let (seen, frames) = (seen(3.0), frames());
         let problem = |width_squared: f64| {

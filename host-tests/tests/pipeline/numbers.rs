@@ -54,7 +54,7 @@ impl StereoSource for Numbered {
     ) -> Result<LineStart, CameraError<Infallible>> {
         let line = self.lines.pop_front().ok_or(CameraError::NoLineLeft)?;
         for (u, (left, right)) in left.iter_mut().zip(right).enumerate() {
-            let grey = |u: usize| ((u * 64 + usize::from(line.row)) * 0x9e37 >> 4) as u8;
+            let grey = |u: usize| (((u * 64 + usize::from(line.row)) * 0x9e37) >> 4) as u8;
             (*left, *right) = (grey(u), grey(u + 3));
         }
         Ok(line)

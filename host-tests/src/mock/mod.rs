@@ -94,7 +94,7 @@ impl MockCamera {
         self.had_alpha
     }
 
-    /// The picture in grey with 8 bits, of colours their luma: 16-bit samples lose their low significant bits.
+    /// The picture in grey with 8 bits, colours as luma: 16-bit samples lose their low significant bits.
     pub fn grey_picture(&self) -> GrayImage {
         let (width, height) = (u32::from(self.format.width), u32::from(self.format.height));
         let grey = (self.format.pixel == PixelFormat::Grey8).then(|| self.bytes.clone());

@@ -197,7 +197,8 @@ mod tests {
         })
     }
 
-    /// The same, moved up or down in the first image to `off` px from the estimate's lines or less.
+    /// Places all over two images, at most `off` px above or below the estimate's lines in the first one; 0
+    /// leaves them where no line is near.
     fn seen(off: f64) -> [Correspondence<f64>; 12] {
         let places = places();
         if off == 0.0 {

@@ -232,7 +232,7 @@ impl<'ast> Visit<'ast> for Seek<'_> {
             let mutants = self.of("MatchArmGuard", guard);
             self.either(mutants, guard, str::to_owned);
         }
-        // Without an arm for the rest, and one with a guard is none, a match that lacks an arm does not compile.
+        // A match that lacks an arm does not compile without an arm for the rest; one with a guard is none.
         let whole = node.span().byte_range();
         let gone = if self.has_rest { self.of("MatchArm", &whole) } else { Vec::new() };
         for (number, _) in gone {

@@ -143,8 +143,12 @@ fn enough<T: Real>(share: T, config: &RobustConfig<T>) -> u32 {
         return 1;
     }
     let samples = config.miss_probability.ln() / (T::ONE - all_right).ln();
-    // Not a number and what is too large are the most.
-    if samples < T::of(f64::from(u32::MAX)) { samples.to_f64() as u32 + 1 } else { u32::MAX }
+    // Not a number and what is too large are the most, as is a share that rounds to none.
+    if samples >= T::ZERO && samples < T::of(f64::from(u32::MAX)) {
+        samples.to_f64() as u32 + 1
+    } else {
+        u32::MAX
+    }
 }
 
 /// The RANSAC search, and the best pose so far with its gain.
@@ -212,7 +216,9 @@ mod tests {
     fn as_many_samples_as_the_share_of_right_ones_asks_for() {
         let config = RobustConfig { miss_probability: 0.01, ..RobustConfig::new(1.0_f64) };
         // ln 0.01 / ln (1 - 1/8) is 34.5; with all right one is enough, with one in a thousand
-        // 4.6 thousand millions are too many to count.
-        assert_eq!([0.5, 1.0, 0.001].map(|share| enough(share, &config)), [35, 1, u32::MAX]);
+        // 4.6 thousand millions are too many to count. With none, or with so small a share that its cube
+        // taken from 1 leaves 1, no number is enough.
+        let shares = [0.5, 1.0, 0.001, 1e-6, 0.0];
+        assert_eq!(shares.map(|share| enough(share, &config)), [35, 1, u32::MAX, u32::MAX, u32::MAX]);
     }
 }

@@ -67,7 +67,7 @@ const MODULES: [Module; 4] = [
             Test::new(
                 "stereopsis-host",
                 "pipeline",
-                &["push", "numbers", "bands", "mapped", "winners", "waited"],
+                &["push", "due", "numbers", "bands", "mapped", "winners", "waited"],
             ),
             Test::new("stereopsis-host", "pipeline", &["faults", "unsure"]),
             Test::new("stereopsis-host", "matching", &["threads"]),

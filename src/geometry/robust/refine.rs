@@ -180,7 +180,7 @@ mod tests {
     use nalgebra::Point2;
 
     fn frames() -> [Frame<f64>; 2] {
-        Frame::of_points(&seen(0.0)).expect("points that are apart")
+        Frame::of_points(&places()).expect("points that are apart")
     }
 
     /// An estimate, in the frames.
@@ -197,14 +197,9 @@ mod tests {
         })
     }
 
-    /// Places all over two images, at most `off` px above or below the estimate's lines in the first one; 0
-    /// leaves them where no line is near.
+    /// Places all over two images, at most `off` px above or below the estimate's lines in the first one.
     fn seen(off: f64) -> [Correspondence<f64>; 12] {
-        let places = places();
-        if off == 0.0 {
-            return places;
-        }
-        let [first, second] = frames();
+        let (places, [first, second]) = (places(), frames());
         let (m, matrix) = (first.matrix(), estimate().matrix());
         core::array::from_fn(|i| {
             let Correspondence { first: p, second: q } = places[i];

@@ -60,6 +60,7 @@ pub(super) fn refuse_fattening<S: MethodParameters>(frame: &mut Frame<'_>, newes
 mod tests {
     use super::*;
     use crate::matching::backend::Backend;
+    use crate::matching::kernel::Kernel;
     use crate::units::{Disparity, PixelFlags};
 
     const NONE: u16 = Disparity::NONE.raw();
@@ -100,5 +101,58 @@ mod tests {
         assert_eq!(edges, [0b10, 0b10, 0b11, 0b11, 0b10, 0b10]);
         Backend::detect().push_edges(&mut edges, [&line; 3], least_gradient(Noise::Low));
         assert_eq!(edges, [0b100, 0b100, 0b110, 0b110, 0b100, 0b100]);
+    }
+
+    /// Whether another answer refuses the one at `x`: pair by pair.
+    fn is_refused(answers: &[Disparity], edges: &[u8], slope: u32, x: usize) -> bool {
+        (0..answers.len()).filter(|&y| y != x).any(|y| {
+            // An edge belongs to what is on its right.
+            let has_edge = edges[x.min(y) + 1..=x.max(y)].contains(&1);
+            let farthest = u32::from(FatteningWork::TOLERANCE) + slope * (x.abs_diff(y) as u32 - 1);
+            !has_edge && u32::from(answers[x].raw()) > u32::from(answers[y].raw()) + farthest
+        })
+    }
+
+    #[test]
+    fn rows_of_any_length_lose_what_another_answer_refuses() {
+        let mut state = 1u32;
+        let mut next = |below: u32| {
+            state = state.wrapping_mul(0x9e37_79b1).wrapping_add(0x7f4a_7c15);
+            (state >> 12) % below
+        };
+        let kernels = [Kernel::Planes, Kernel::Lanes, Kernel::Avx2, Kernel::Avx512];
+        for width in [1, 2, 3, 31, 63, 64, 65, 127, 128, 129, 191, 200] {
+            // Surfaces with an edge, a hole or another depth here and there.
+            let (mut answers, mut edges) = ([Disparity::NONE; 200], [0u8; 200]);
+            let mut depth = 1000;
+            for (answer, edges) in answers.iter_mut().zip(&mut edges) {
+                depth = if next(16) == 0 { next(3000) as u16 } else { depth };
+                *answer = if next(9) == 0 { Disparity::NONE } else { Disparity::from_raw(depth) };
+                *edges = u8::from(next(20) == 0);
+            }
+            let (row, edges_of_row) = (&answers[..width], &edges[..width]);
+            let gone: [bool; 200] = core::array::from_fn(|x| {
+                x < width && row[x].is_some() && is_refused(row, edges_of_row, 24, x)
+            });
+            assert!(width < 100 || gone.contains(&true), "{width}: nothing is refused");
+            for backend in kernels.into_iter().filter_map(Backend::of).chain([Backend::detect()]) {
+                let (mut found, mut flags) = (answers, [PixelFlags::CLEAR; 200]);
+                let (found, flags) = (&mut found[..width], &mut flags[..width]);
+                let mut edges = edges;
+                let (row, slope) = (1, Disparity::from_raw(24));
+                backend.refuse_fattening(FatteningWork {
+                    answers: found,
+                    flags,
+                    edges: &mut edges[..width],
+                    row,
+                    slope,
+                });
+                for x in 0..width {
+                    let left = if gone[x] { Disparity::NONE } else { answers[x] };
+                    assert_eq!(found[x], left, "{:?} {width} {x}", backend.kernel());
+                    assert_eq!(flags[x], PixelFlags::UNTEXTURED.when(gone[x]), "{width} {x}");
+                }
+            }
+        }
     }
 }

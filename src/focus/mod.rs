@@ -8,7 +8,8 @@
 //! * [`SharpnessRows`]: classic measures of sharpness over windows. In them and below, in running order:
 //!   [`binomial`], [`modified_laplacian`], [`tenengrad`], [`laplacian`].
 //! * [`FocusMap`]: frames to a [`FocusPeak`] for each cell, with [`Breathing`]; among windows of
-//!   several sizes [`narrowest_steady`] chooses; then [`median_row`] and [`plane_row`].
+//!   several sizes [`narrowest_steady`] chooses; then [`median_row`] and [`plane_row`], and beside
+//!   edges in depth, by [`FocusOrder`], [`uncover_row`], [`partly_hidden_row`] and [`extend_row`].
 //! * [`FocusScale`]: peaks to [`Depth`](crate::depth::Depth).
 //! * [`LensActuator`], [`Dw9714`]: what moves a lens. [`FocusCalibration`]: its positions to distances.
 //! * [`RegionSharpness`], [`Autofocus`] with its [`FocusSearch`]: a region brought into focus in few frames.
@@ -47,11 +48,13 @@ mod depth_of_field;
 mod logarithm;
 mod micro_lens;
 mod peak;
+mod cells;
 mod map_state;
 mod map_view;
 mod map;
 mod median;
 mod moving_least_squares;
+mod occlusion;
 mod peak_search;
 mod autofocus;
 mod scale;
@@ -76,6 +79,7 @@ pub use map_view::FocusMapView;
 pub use median::median_row;
 pub use micro_lens::MicroLens;
 pub use moving_least_squares::plane_row;
+pub use occlusion::{FocusOrder, extend_row, partly_hidden_row, uncover_row};
 pub use peak::{FocusCell, FocusPeak, NoFocus};
 pub use peak_search::{FocusSearch, FocusSearchStep};
 pub use region::{Region, RegionSharpness};

@@ -1,5 +1,6 @@
 //! Moving least squares (Lancaster & Salkauskas 1981): smoothing of a focus map by local planes.
 
+use super::cells::Cells;
 use super::{FocusPeak, NoFocus};
 
 /// Places that are looked at to either side, in steps of 1, 2 or 4 cells.
@@ -33,30 +34,24 @@ pub fn plane_row(
     row: usize,
     out: &mut [Result<FocusPeak, NoFocus>],
 ) {
-    let at = |x: i32, y: i32| {
-        let (x, y) = (usize::try_from(x).ok()?, usize::try_from(y).ok()?);
-        if x >= columns {
-            return None;
-        }
-        peaks.get(y.checked_mul(columns)?.checked_add(x)?)?.ok()
-    };
+    let cells = Cells { peaks, columns };
     for (x, own) in (0..columns as i32).zip(out) {
         let Ok(own) = own else { continue };
         for &(_, step) in STEPS.iter().filter(|(least, _)| own.noise_q8 >= *least) {
-            let mut sums = Sums::default();
+            let mut plane = LocalPlane::default();
             let (mut lowest, mut highest) = (own.position_q8, own.position_q8);
             for dy in -REACH..=REACH {
                 for dx in -REACH..=REACH {
-                    let Some(near) = at(x + step * dx, row as i32 + step * dy) else { continue };
-                    if is_same_surface(own, &near) {
+                    let Some(near) = cells.at(x + step * dx, row as i32 + step * dy) else { continue };
+                    if is_within(own, &near, NEAR) {
                         let off = near.position_q8 as f32 - own.position_q8 as f32;
-                        sums.add([dx as f32, dy as f32], off, near.noise_q8 as f32);
+                        plane.add([dx as f32, dy as f32], off, near.noise_q8 as f32);
                         lowest = lowest.min(near.position_q8);
                         highest = highest.max(near.position_q8);
                     }
                 }
             }
-            if let Some(value) = sums.value() {
+            if let Some((value, true)) = plane.value(RIDGE) {
                 // Rounded; a cast of what is out of range is the nearest end.
                 own.position_q8 = ((own.position_q8 as f32 + value + 0.5) as u32).clamp(lowest, highest);
                 break;
@@ -65,17 +60,17 @@ pub fn plane_row(
     }
 }
 
-/// Whether two answers differ by no more than [`NEAR`] and three deviations of their difference. In integers,
+/// Whether two answers differ by no more than `near` and three deviations of their difference. In integers,
 /// for an answer at the very bound belongs to a surface or does not on every machine alike.
-fn is_same_surface(a: &FocusPeak, b: &FocusPeak) -> bool {
+pub(super) fn is_within(a: &FocusPeak, b: &FocusPeak, near: u32) -> bool {
     let square = |value: u32| u64::from(value).saturating_mul(value.into());
     let variance = square(a.noise_q8).saturating_add(square(b.noise_q8));
-    square(a.position_q8.abs_diff(b.position_q8).saturating_sub(NEAR)) <= variance.saturating_mul(9)
+    square(a.position_q8.abs_diff(b.position_q8).saturating_sub(near)) <= variance.saturating_mul(9)
 }
 
 /// The normal equations of a plane `z + a x + b y` through weighted answers.
 #[derive(Default)]
-struct Sums {
+pub(super) struct LocalPlane {
     weight: f32,
     /// Sums of weight and place, and of weight and its square and product.
     places: [f32; 2],
@@ -89,8 +84,9 @@ struct Sums {
     noise: f32,
 }
 
-impl Sums {
-    fn add(&mut self, [x, y]: [f32; 2], value: f32, noise: f32) {
+impl LocalPlane {
+    /// Adds an answer at a place, with its noise, 1/256 frame.
+    pub(super) fn add(&mut self, [x, y]: [f32; 2], value: f32, noise: f32) {
         let weight = SUREST * SUREST / (noise * noise + SUREST * SUREST);
         self.energy += weight * value * value;
         self.noise += weight * noise * noise;
@@ -108,10 +104,11 @@ impl Sums {
         *vy += weight * y * value;
     }
 
-    /// Value of the plane at the place itself; `None` where answers are farther from it than their noise
-    /// says. The slopes come from sums about the weighted mean, of which the ridge bounds the condition: in
-    /// those about the place itself a lone answer at the side leaves the determinant nothing but rounding.
-    fn value(&self) -> Option<f32> {
+    /// Value of the plane at the place itself, and whether answers are as near to it as their noise says;
+    /// `None` without answers. The slopes come from sums about the weighted mean, of which the ridge, a
+    /// share of the weight of all, bounds the condition: in those about the place itself a lone answer at
+    /// the side leaves the determinant nothing but rounding.
+    pub(super) fn value(&self, ridge: f32) -> Option<(f32, bool)> {
         if self.weight <= 0.0 {
             return None;
         }
@@ -120,7 +117,7 @@ impl Sums {
         let [px, py] = self.places;
         let [sx, sy] = self.squares;
         let [vx, vy] = self.values;
-        let ridge = RIDGE * self.weight;
+        let ridge = ridge * self.weight;
         let (sx, sy) = (sx - px * mean_x + ridge, sy - py * mean_y + ridge);
         let product = self.product - px * mean_y;
         let (vx, vy) = (vx - px * mean, vy - py * mean);
@@ -131,6 +128,6 @@ impl Sums {
             (0.0, 0.0)
         };
         let off_plane = self.energy - self.value * mean - a * vx - b * vy;
-        (off_plane <= FARTHEST * self.noise).then_some(mean - a * mean_x - b * mean_y)
+        Some((mean - a * mean_x - b * mean_y, off_plane <= FARTHEST * self.noise))
     }
 }

@@ -1,7 +1,7 @@
 //! Focus peaks to metric depth by the lens equation.
 
 use super::lens::finite;
-use super::{Breathing, FocusLineError, FocusPeak, LensError, ThinLens};
+use super::{Breathing, FocusLineError, FocusOrder, FocusPeak, LensError, ThinLens};
 use crate::depth::Depth;
 
 /// The depth of every frame of a stack: the image distance `z` between lens and sensor in each, and the lens,
@@ -69,6 +69,14 @@ impl<'a> FocusScale<'a> {
     /// The lens.
     pub fn lens(&self) -> ThinLens<f32> {
         self.lens
+    }
+
+    /// In which direction the frames are focused: the farther the sensor is behind the lens, the nearer.
+    pub fn order(&self) -> FocusOrder {
+        match self.images_m {
+            [first, second, ..] if first > second => FocusOrder::NearToFar,
+            _ => FocusOrder::FarToNear,
+        }
     }
 
     /// The image distance at a frame with its fraction, counted from 0, and its change per frame there, m.

@@ -107,15 +107,16 @@ impl RenderedStack {
         self.scene.sharp_m().iter().map(|sharp| (sharp - first) / step + 1.0).collect()
     }
 
-    /// The score of this library's answers for those frames; a lens that breathes is corrected.
+    /// The score of this library's answers for those frames; where the sensor stood is told
+    /// only of a lens that breathes, which is corrected.
     pub fn ours(&self, frames: &[GrayImage]) -> Result<FocusScore, FocusError> {
         let lens = ThinLens::new(4e-3).expect("a focal length");
         let scale = FocusScale::new(lens, &self.images_m).expect("positions that rise");
         let all = frames.iter().map(|grey| {
             Ok(Frame { grey: grey.clone(), colours: DynamicImage::ImageLuma8(grey.clone()).into_rgb8() })
         });
-        let breathing = self.scene.reference_m.map(|_| &scale);
-        let found = run((WIDTH as u16, HEIGHT as u16), all, breathing)?;
+        let breathes = self.scene.reference_m.is_some();
+        let found = run((WIDTH as u16, HEIGHT as u16), all, breathes.then_some(&scale), breathes)?;
         Ok(score(&found.index(), &self.truth()))
     }
 

@@ -5,8 +5,8 @@ use super::memory::MapMemory;
 use super::stack::{Frame, StackError};
 use image::RgbImage;
 use stereopsis::focus::{
-    Breathing, FocusConfig, FocusConfigError, FocusLineError, FocusPeak, FocusScale, NoFocus, median_row,
-    narrowest_steady, plane_row,
+    Breathing, FocusConfig, FocusConfigError, FocusLineError, FocusOrder, FocusPeak, FocusScale, NoFocus,
+    extend_row, median_row, narrowest_steady, partly_hidden_row, plane_row, uncover_row,
 };
 
 /// What a stack tells, a value for each pixel, row by row.
@@ -45,13 +45,17 @@ pub enum FocusError {
 const BREATHING_NOISE: u32 = 32;
 
 /// Passes all frames, `width` by `height` pixels, through maps of the core with windows of several sizes. The
-/// frames are as they are, or magnified as `breathing` says. A pixel's answer is that of the narrowest
-/// window in which it is steady; then medians of answers are taken, and planes through them.
+/// frames are as they are, or, if they breathe, magnified as `scale` says, without which none do. A pixel's
+/// answer is that of the narrowest window in which it is steady; then medians of answers are taken, and
+/// planes through them. Beside edges in depth what is in front gives back what it took of what is behind,
+/// where `scale` or the answers tell which is which.
 pub fn run(
     (width, height): (u16, u16),
     frames: impl IntoIterator<Item = Result<Frame, StackError>>,
-    breathing: Option<&FocusScale<'_>>,
+    scale: Option<&FocusScale<'_>>,
+    breathes: bool,
 ) -> Result<FocusResult, FocusError> {
+    let breathing = scale.filter(|_| breathes);
     // Beside those that are asked the map of the picture that is sharp all over: its window averages noise
     // out, and it has a cell for each pixel.
     let (configs, pictured) = match breathing {
@@ -111,7 +115,26 @@ pub fn run(
         median_row(rows.map(|y| &raw[y * width..][..width]), out);
         plane_row(&raw, width, y, out);
     }
+    if let Some(order) = scale.map(FocusScale::order).or_else(|| FocusOrder::of_answers(&peaks, width)) {
+        beside_edges(&mut peaks, width, order);
+    }
     Ok(FocusResult { width, peaks, picture })
+}
+
+/// Takes the rim of what is in front away, and carries what is behind up to the edge.
+fn beside_edges(peaks: &mut [Result<FocusPeak, NoFocus>], width: usize, order: FocusOrder) {
+    let whole = peaks.to_vec();
+    for (y, out) in peaks.chunks_exact_mut(width).enumerate() {
+        uncover_row(&whole, width, y, order, out);
+    }
+    let uncovered = peaks.to_vec();
+    let mut is_hidden = vec![false; peaks.len()];
+    for (y, out) in is_hidden.chunks_exact_mut(width).enumerate() {
+        partly_hidden_row(&uncovered, width, y, order, out);
+    }
+    for (y, out) in peaks.chunks_exact_mut(width).enumerate() {
+        extend_row(&uncovered, &is_hidden, width, y, out);
+    }
 }
 
 impl FocusResult {

@@ -80,7 +80,7 @@ fn focus() -> Vec<Option<Depth>> {
         let grey = scene.render(image.into(), seed);
         Ok(Frame { colours: image::DynamicImage::ImageLuma8(grey.clone()).into_rgb8(), grey })
     });
-    let found = run((WIDTH as u16, HEIGHT as u16), frames, None).expect("a map");
+    let found = run((WIDTH as u16, HEIGHT as u16), frames, None, false).expect("a map");
     let scale = FocusScale::new(ThinLens::new(4e-3).expect("a lens"), &positions).expect("a scale");
     found.peaks.iter().map(|peak| scale.depth(peak.as_ref().ok()?).ok()).collect()
 }

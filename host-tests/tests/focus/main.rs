@@ -2,6 +2,7 @@
 
 mod autofocus;
 mod dw9714;
+mod edges;
 mod fusion;
 mod lens;
 mod order;

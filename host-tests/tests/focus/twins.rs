@@ -33,7 +33,7 @@ fn rows<T: Copy + Default + Into<i64>>(picture: &GrayImage, row: impl Fn([&[u8];
     all
 }
 
-type Peaks = Vec<Result<FocusPeak, NoFocus>>;
+pub type Peaks = Vec<Result<FocusPeak, NoFocus>>;
 
 /// The core's peaks of a stack, and which cells each frame was told to be sharper in.
 fn map(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> (Peaks, Vec<Vec<bool>>) {
@@ -59,7 +59,7 @@ fn map(config: &FocusConfig, frames: &[GrayImage], scales: &[f32]) -> (Peaks, Ve
     (peaks.collect(), sharper)
 }
 
-fn plain(peak: &Result<FocusPeak, NoFocus>) -> Option<twin::Peak> {
+pub fn plain(peak: &Result<FocusPeak, NoFocus>) -> Option<twin::Peak> {
     peak.ok().map(|p| [p.position_q8.into(), p.sigma_q8.into(), p.noise_q8.into(), p.confidence.into()])
 }
 

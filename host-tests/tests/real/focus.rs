@@ -10,7 +10,7 @@ fn answer(name: &str) -> FocusResult {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds focus/");
     let stack = Stack::open(&PathBuf::from(data).join("focus").join(name)).expect("a stack");
     let (width, height) = stack.size();
-    run((width as u16, height as u16), (0..stack.len()).map(|i| stack.frame(i)), None).expect("a map")
+    run((width as u16, height as u16), (0..stack.len()).map(|i| stack.frame(i)), None, false).expect("a map")
 }
 
 #[test]

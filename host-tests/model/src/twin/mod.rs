@@ -14,9 +14,9 @@
 //! * [`Stages`]: what each of them gives, for those who build one of them elsewhere.
 //!
 //! Apart from them: [`mod@balance`], one exposure for both pictures; [`bundle`], the step of a bundle
-//! adjustment; [`features`], corners, descriptors and matches; [`focus`] and [`focus_smoothing`], sharpness,
-//! its peaks and their map; [`obstacles`], ground and stixels; [`remap`](mod@remap), raw pictures as
-//! rectified ones.
+//! adjustment; [`features`], corners, descriptors and matches; [`focus`], [`focus_smoothing`] and
+//! [`focus_edges`], sharpness, its peaks and their map; [`obstacles`], ground and stixels;
+//! [`remap`](mod@remap), raw pictures as rectified ones.
 //!
 //! Nothing here is shared with the core but its words: [`Config`], [`Disparity`], [`PixelFlags`].
 
@@ -26,6 +26,7 @@ pub mod census;
 pub mod cost;
 pub mod features;
 pub mod focus;
+pub mod focus_edges;
 pub mod focus_smoothing;
 pub mod obstacles;
 pub mod paths;

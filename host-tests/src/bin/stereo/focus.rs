@@ -88,10 +88,10 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     // Images have at most 4096 columns and rows.
     let size = (width as u16, height as u16);
     let breathing = match &scale {
-        Some(scale) => breathes(&stack, &kept, scale)?.then_some(scale),
-        None => None,
+        Some(scale) => breathes(&stack, &kept, scale)?,
+        None => false,
     };
-    let result = map(size, kept.iter().map(|&index| stack.frame(index)), breathing)?;
+    let result = map(size, kept.iter().map(|&index| stack.frame(index)), scale.as_ref(), breathing)?;
     let numbers: Vec<usize> = kept.iter().map(|index| index + 1).collect();
 
     let mut staging = Staging::new(&args.out)?;
@@ -125,7 +125,7 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     let mut text =
         format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", kept.len());
     if scale.is_some() {
-        let grow = if breathing.is_some() {
+        let grow = if breathing {
             "grow as the lens says: corrected"
         } else {
             "do not grow as the lens says: left as they are"

@@ -50,6 +50,7 @@ mod package;
 mod packages;
 mod parallel;
 mod pictures;
+mod profile;
 mod races;
 mod readme;
 mod rtl;
@@ -104,6 +105,8 @@ enum Chore {
     Altered(altered::Arguments),
     /// Measures how right depth from focus is on rendered stacks, beside the plain method.
     Focus(focus::Arguments),
+    /// Measures where the nanoseconds of a frame go on this machine, by stage.
+    Profile(profile::Arguments),
     /// Writes the generated parts of docs/performance.md anew.
     Readme {
         /// Writes nothing; fails when a part differs from what would be written.
@@ -134,8 +137,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, miri, mutants, soak, view, book, \
-                        altered, focus, c, cross, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, races, mutants, soak, view, book, \
+                        altered, focus, profile, c, cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;
@@ -155,6 +158,7 @@ fn main() -> ExitCode {
         Chore::Book(arguments) => book::run(&arguments),
         Chore::Focus(arguments) => focus::run(&arguments),
         Chore::Altered(arguments) => altered::run(&arguments),
+        Chore::Profile(arguments) => profile::run(&arguments),
         Chore::Readme { check } => readme::run(check),
         Chore::C => c::run().and_then(|()| c::every_method()),
         Chore::Cross => cross::run(),

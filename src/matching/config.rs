@@ -201,43 +201,19 @@ impl Checks {
     /// Most answers, few of them wrong.
     pub const DEFAULT: Self = Self {
         left_right_px: Some(1),
-        uniqueness_percent: None,
         refuse_flat: true,
-        texture_gradient: 0,
-        texture_pixels: 0,
         refuse_ceiling: true,
-        smoothing_radius: 4,
         speckle_pixels: 24,
-        surface_step: Disparity::ONE_PIXEL,
-        median: false,
-        fill_pixels: 0,
-        fill_step: Disparity::ONE_PIXEL,
-        speckle_run: 0,
-        fattening_slope: Disparity::NONE,
-        open_run: 0,
-        open_margin: 0,
-        refuse_repeats: false,
+        ..Self::DENSE
     };
 
     /// Sure answers: fewer, and wrong only rarely.
     pub const STRICT: Self = Self {
-        left_right_px: Some(1),
         uniqueness_percent: Some(5),
-        refuse_flat: true,
         texture_gradient: 2,
         texture_pixels: 4,
-        refuse_ceiling: true,
-        smoothing_radius: 4,
         speckle_pixels: 60,
-        surface_step: Disparity::ONE_PIXEL,
-        median: false,
-        fill_pixels: 0,
-        fill_step: Disparity::ONE_PIXEL,
-        speckle_run: 0,
-        fattening_slope: Disparity::NONE,
-        open_run: 0,
-        open_margin: 0,
-        refuse_repeats: false,
+        ..Self::DEFAULT
     };
 }
 

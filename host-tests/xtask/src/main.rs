@@ -137,8 +137,8 @@ fn main() -> ExitCode {
                 "error: {}",
                 one_line(&usage_line(
                     &error,
-                    "the chores are test, firmware, growth, rtl, fuzz, miri, races, mutants, soak, view, book, \
-                        altered, focus, profile, c, cross, header, publish and readme"
+                    "the chores are test, firmware, growth, rtl, fuzz, miri, races, mutants, soak, view, \
+                        book, altered, focus, profile, c, cross, header, publish and readme"
                 ))
             );
             return ExitCode::FAILURE;

@@ -29,8 +29,8 @@ const DISPARITIES: &str = "64";
 const FRAMES: &str = "400";
 const SAMPLES: &str = "4000";
 
-/// The stages, with words of which one is in the paths of their files below src/matching, and in no path of a
-/// stage before.
+/// The stages, with words of which one is in the paths of their files below src/matching and src/imaging, and
+/// in no path of a stage before.
 const STAGES: [(&str, &[&str]); 8] = [
     ("census, features", &["census", "features", "row_codes"]),
     ("cost", &["columns", "cost", "candidates"]),
@@ -137,7 +137,7 @@ fn sorted(places: &BTreeMap<u64, u64>, files: &str) -> Samples {
         let (mut found, mut is_own, mut is_known) = (None, false, false);
         while let Some(file) = lines.next_if(|line| !line.starts_with("0x")) {
             is_known |= !file.starts_with("??");
-            is_own |= file.contains("src/matching/") || file.contains("src/pipeline/");
+            is_own |= ["matching", "imaging", "pipeline"].iter().any(|of| below(of, file).is_some());
             found = found.or_else(|| stage(file));
         }
         match found {
@@ -151,10 +151,15 @@ fn sorted(places: &BTreeMap<u64, u64>, files: &str) -> Samples {
 
 /// The stage that a file belongs to alone.
 fn stage(file: &str) -> Option<usize> {
-    let (_, path) = file.split_once("src/matching/")?;
+    let path = below("matching", file).or_else(|| below("imaging", file))?;
     let is_shared = SHARED.iter().any(|word| path.contains(word));
     let stage = || STAGES.iter().position(|(_, words)| words.iter().any(|word| path.contains(word)));
     if is_shared { None } else { stage() }
+}
+
+/// The path of a file of a module, below it.
+fn below<'a>(module: &str, file: &'a str) -> Option<&'a str> {
+    file.split_once(&format!("src/{module}/")).map(|(_, path)| path)
 }
 
 /// The name of this machine's processor.
@@ -174,7 +179,7 @@ mod tests {
         let places = BTreeMap::from([(0x10, 5), (0x20, 3), (0x30, 2), (0x40, 7), (0x50, 1)]);
         let files = "0x0000000000000010\n/lib/core/src/num.rs:3\n/x/src/matching/memory/winners.rs:1\n\
                      /x/src/matching/backend/portable/sgm/passes/cost.rs:9\n/x/src/matching/method/sgm.rs:2\n\
-                     0x0000000000000020\n/x/src/matching/backend/simd/speckle.rs:4 (discriminator 2)\n\
+                     0x0000000000000020\n/x/src/matching/backend/simd/speckle.rs:4\n\
                      0x0000000000000030\n/x/src/pipeline/rows.rs:7\n0x0000000000000040\n/png/src/filter.rs:1\n\
                      0x0000000000000050\n??:0\n";
         let mut expected = Samples { rest: 3, ..Samples::default() };

@@ -177,10 +177,10 @@ mod tests {
     #[test]
     fn samples_belong_to_the_innermost_stage() {
         let places = BTreeMap::from([(0x10, 5), (0x20, 3), (0x30, 2), (0x40, 7), (0x50, 1)]);
-        let files = "0x0000000000000010\n/lib/core/src/num.rs:3\n/x/src/matching/memory/winners.rs:1\n\
+        let files = "0x0000000000000010\n/lib/src/num.rs:3\n/x/src/matching/memory/winners.rs:1\n\
                      /x/src/matching/backend/portable/sgm/passes/cost.rs:9\n/x/src/matching/method/sgm.rs:2\n\
                      0x0000000000000020\n/x/src/matching/backend/simd/speckle.rs:4\n\
-                     0x0000000000000030\n/x/src/pipeline/rows.rs:7\n0x0000000000000040\n/png/src/filter.rs:1\n\
+                     0x0000000000000030\n/x/src/pipeline/rows.rs:7\n0x0000000000000040\n/png/filter.rs:1\n\
                      0x0000000000000050\n??:0\n";
         let mut expected = Samples { rest: 3, ..Samples::default() };
         (expected.stages[1], expected.stages[6]) = (5, 3);

@@ -7,9 +7,10 @@ use serde::Deserialize;
 use std::ops::Range;
 use syn::spanned::Spanned;
 use syn::visit::{self, Visit};
-use syn::{Arm, Block, Expr, ExprBinary, ExprMatch, ExprStruct, ExprUnary, Pat};
+use syn::{Arm, Block, Expr, ExprBinary, ExprConst, ExprMatch, ExprRepeat, ExprStruct, ExprUnary, Pat};
 use syn::{
-    ImplItemConst, ImplItemFn, ItemConst, ItemFn, ReturnType, Signature, TraitItemConst, TraitItemFn, Type,
+    GenericArgument, ImplItemConst, ImplItemFn, ItemConst, ItemFn, ItemStatic, ReturnType, Signature,
+    TraitItemConst, TraitItemFn, Type, TypeArray,
 };
 
 /// A mutant as `cargo mutants --list --json` prints it.
@@ -183,6 +184,24 @@ impl<'ast> Visit<'ast> for Seek<'_> {
 
     fn visit_trait_item_const(&mut self, _: &'ast TraitItemConst) {}
 
+    fn visit_item_static(&mut self, _: &'ast ItemStatic) {}
+
+    fn visit_expr_const(&mut self, _: &'ast ExprConst) {}
+
+    fn visit_type_array(&mut self, node: &'ast TypeArray) {
+        self.visit_type(&node.elem);
+    }
+
+    fn visit_expr_repeat(&mut self, node: &'ast ExprRepeat) {
+        self.visit_expr(&node.expr);
+    }
+
+    fn visit_generic_argument(&mut self, node: &'ast GenericArgument) {
+        if !matches!(node, GenericArgument::Const(_)) {
+            visit::visit_generic_argument(self, node);
+        }
+    }
+
     fn visit_expr_binary(&mut self, node: &'ast ExprBinary) {
         let mutants = self.of("BinaryOperator", &node.op.span().byte_range());
         // `let` stands in no brackets.
@@ -297,6 +316,16 @@ mod tests {
             &woven.text[of(1).mutant.start..of(1).code.end],
             "(if crate::mutant::on(1) { 1 / a } else { 1 * a })"
         );
+    }
+
+    #[test]
+    fn what_the_compiler_runs_stays() {
+        let source = "static N: u8 = 1 + 2;\nfn f(_: [u8; 1 + 2]) -> u8 {\n    let _ = [1; 1 + 2];\n    \
+                      let _ = const { 1 + 2 };\n    g::<{ 1 + 2 }>() + 1\n}\n";
+        let places = [(1, 18), (2, 16), (3, 19), (4, 23), (5, 13), (5, 22)];
+        let mutants = places.map(|(line, column)| mutant("BinaryOperator", "-", line, column));
+        let woven = weave(source, &(0..).zip(&mutants).collect::<Vec<_>>()).expect("it parses");
+        assert_eq!(woven.left_out, [0, 1, 2, 3, 4], "{}", woven.text);
     }
 
     #[test]

@@ -115,3 +115,26 @@ impl<const W: usize, const D: usize> PathWorkspace<W, D> {
 /// Bytes where words of them can be read and written.
 #[repr(C, align(8))]
 pub struct Aligned<T>(pub T);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn memory_is_given_to_its_last_whole_word() {
+        // Three words, and 16 + 32 + 10 + 2 bytes; with an even width the last two make no word.
+        let mut odd = WindowWorkspace::<3, 5, 16>::ZERO;
+        assert_eq!(odd.words().len(), 3 + 60 / 4);
+        let mut even = WindowWorkspace::<0, 4, 32>::ZERO;
+        assert_eq!(even.words().len(), (32 + 64 + 8 + 2) / 4);
+        // Five columns before and after.
+        let mut columns = Columns::<3, 16>::ZERO;
+        assert_eq!(columns.flat().len(), 13 * 16);
+        // Two columns more.
+        let mut volumes = Volumes::<2, 3, 16>::ZERO;
+        assert_eq!(volumes.flat().len(), (2 * 3 + 2) * 16);
+        let mut paths = PathWorkspace::<5, 16>::ZERO;
+        assert_eq!(paths.bytes().len(), 10 * 5);
+        assert_eq!(paths.words().len(), (10 * 5 + 6 * 16) / 4);
+    }
+}

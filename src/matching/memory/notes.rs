@@ -43,3 +43,25 @@ impl Note {
         noted & Self::MOST_MARGIN
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_answer_gives_its_margin_back_and_what_is_refused_its_flags() {
+        for (bits, margin) in (0..=255).flat_map(|bits| (0..=255).map(move |margin| (bits, margin))) {
+            let flags = PixelFlags::from_bits(bits);
+            let mut note = Note(flags.bits());
+            note.take(margin, Disparity::ZERO);
+            assert_eq!(note.give_back(Disparity::ZERO), margin.min(127), "{bits} {margin}");
+            let ceiling = PixelFlags::CEILING.when(flags.contains(PixelFlags::CEILING));
+            assert_eq!(note.0, ceiling.bits(), "{bits} {margin}");
+
+            let mut note = Note(flags.bits());
+            note.take(margin, Disparity::NONE);
+            note.give_back(Disparity::NONE);
+            assert_eq!(note.0, flags.bits(), "{bits} {margin}");
+        }
+    }
+}

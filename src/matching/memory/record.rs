@@ -125,3 +125,45 @@ impl WinnerRecord {
         usize::from(self.disparity()) < candidates && self.cost() <= below.min(above).min(self.second())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bytes_are_the_record() {
+        let record = WinnerRecord::new(12, 30, [34, 41]);
+        assert_eq!(record.bytes(), [34, 30, 41, 12, 12, 255, 0, 0]);
+        let record = record.with_kept(9).with_second(90).sealed(0x307);
+        assert_eq!(record.bytes(), [34, 30, 41, 12, 9, 90, 7, !(34 ^ 30 ^ 41 ^ 12 ^ 9 ^ 90 ^ 7)]);
+        assert_eq!((record.disparity(), record.cost(), record.beside()), (12, 30, [34, 41]));
+        assert_eq!((record.kept(), record.second(), record.row()), (9, 90, 7));
+        assert_eq!(WinnerRecord::from_bytes(record.bytes()), record);
+        assert_eq!(record.winner(), Winner::new(30, 12, (34, 41)));
+    }
+
+    #[test]
+    fn a_record_of_another_row_or_with_another_bit_is_not_intact() {
+        let record = WinnerRecord::new(12, 30, [34, 41]).sealed(7);
+        assert!(record.is_intact(7) && record.is_intact(0x107) && !record.is_intact(6));
+        for (byte, bit) in (0..8).flat_map(|byte| (0..8).map(move |bit| (byte, bit))) {
+            let mut bytes = record.bytes();
+            bytes[byte] ^= 1 << bit;
+            let row = u16::from(bytes[6]);
+            assert!(!WinnerRecord::from_bytes(bytes).is_intact(row), "byte {byte}, bit {bit}");
+        }
+    }
+
+    #[test]
+    fn a_winner_costs_least_and_is_a_candidate() {
+        let costs = [0, 1, 29, 30, 31, 254, 255];
+        for (below, above) in costs.into_iter().flat_map(|below| costs.map(|above| (below, above))) {
+            for second in costs {
+                let record = WinnerRecord::new(12, 30, [below, above]).with_second(second);
+                let is_least = below >= 30 && above >= 30 && second >= 30;
+                assert_eq!(record.is_possible(13), is_least, "{record:?}");
+                assert!(!record.is_possible(12), "{record:?}");
+            }
+        }
+    }
+}

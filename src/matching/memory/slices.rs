@@ -49,3 +49,30 @@ pub(in crate::matching) const fn multiple_of<const TO: usize>(number: usize) -> 
     const { assert!(TO > 0) };
     number.saturating_add(TO - 1) / TO * TO
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_rounded_up_to_a_multiple() {
+        let next = |number: usize, to: usize| (number..).find(|next| next % to == 0);
+        for number in 0..200 {
+            assert_eq!(Some(multiple_of::<1>(number)), next(number, 1));
+            assert_eq!(Some(multiple_of::<4>(number)), next(number, 4));
+            assert_eq!(Some(multiple_of::<31>(number)), next(number, 31));
+            assert_eq!(Some(multiple_of::<32>(number)), next(number, 32));
+        }
+    }
+
+    #[test]
+    fn parts_are_those_that_are_asked_for() {
+        let mut numbers = [1, 2, 3, 4, 5];
+        assert_eq!(part(&numbers, 1..3), [2, 3]);
+        part_mut(&mut numbers, 3..).fill(9);
+        let (first, rest) = split_mut(&mut numbers, 2);
+        assert_eq!((&*first, &*rest), (&[1, 2][..], &[3, 9, 9][..]));
+        copy(&[7, 8, 6], rest);
+        assert_eq!(numbers, [1, 2, 7, 8, 6]);
+    }
+}

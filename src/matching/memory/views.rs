@@ -60,3 +60,33 @@ pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]
     // SAFETY: as in `view`, and the other way round.
     unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().byte_add(skip).cast(), count) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_view_begins_where_a_number_may_stand_and_ends_with_the_last_whole_one() {
+        let mut words = [0u32; 6];
+        let bytes = view_mut::<u32, u8>(&mut words);
+        assert_eq!(bytes.len(), 24);
+        for (place, byte) in bytes.iter_mut().enumerate() {
+            *byte = place as u8;
+        }
+        for (begin, end) in (0..=24usize).flat_map(|begin| (begin..=24).map(move |end| (begin, end))) {
+            let first = begin.next_multiple_of(4);
+            // A slice that ends before a word's place is shorter than any that is looked at.
+            if first > end {
+                continue;
+            }
+            let number = |at: usize| u32::from_le_bytes([0, 1, 2, 3].map(|byte| (at + byte) as u8));
+            let whole = (first..).step_by(4).take_while(|at| at + 4 <= end).map(number);
+            let part = &mut bytes[begin..end];
+            assert!(whole.clone().eq(view::<u8, u32>(part).iter().copied()), "{begin}..{end}");
+            assert!(whole.eq(view_mut::<u8, u32>(part).iter().copied()), "{begin}..{end}");
+        }
+        let halves = view::<u32, u16>(&words);
+        assert_eq!(halves.len(), 12);
+        assert_eq!(view::<u16, u32>(&halves[1..10]).len(), 4, "from the second word up to the fifth");
+    }
+}

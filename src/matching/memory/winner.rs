@@ -63,3 +63,27 @@ impl Winner {
         ((self.0 & 0xff).wrapping_sub(cost), (self.0 >> 16 & 0xff).wrapping_sub(cost))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_form_gives_what_went_in() {
+        let bytes = [0, 1, 0x0f, 0x55, 0x80, 0xaa, 0xff];
+        for (cost, disparity) in bytes.into_iter().flat_map(|cost| bytes.map(|disparity| (cost, disparity))) {
+            for (below, above) in bytes.into_iter().flat_map(|below| bytes.map(|above| (below, above))) {
+                let winner = Winner::new(cost, disparity, (below, above));
+                let costs = u32::from_le_bytes([below, cost, above, !disparity]);
+                assert_eq!(Winner::of_costs(costs, disparity), winner);
+                assert_eq!(Winner::new(cost, disparity, (1, 2)).with_beside((below, above)), winner);
+                assert_eq!(winner.beside(), (below, above));
+                assert_eq!((winner.cost(), winner.disparity()), (cost, u32::from(disparity)));
+                assert_eq!(winner.key(), 256 * u32::from(cost) + u32::from(disparity));
+                if cost <= below.min(above) {
+                    assert_eq!(winner.rises(), (u32::from(below - cost), u32::from(above - cost)));
+                }
+            }
+        }
+    }
+}

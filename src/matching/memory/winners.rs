@@ -205,3 +205,80 @@ impl<'a> Lengths<'a> {
         part_mut(view_mut::<u16, u8>(self.0), ..width)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_second_best_is_near_when_it_costs_the_percentage_more_or_less() {
+        for percent in [0, 1, 5, 50, 98, 99] {
+            for (cost, second) in (0..=255).flat_map(|cost| (0..=255).map(move |second| (cost, second))) {
+                let mut flags = [PixelFlags::CLEAR];
+                let mut margins = [0];
+                Unique::new(Some(percent), &mut flags, &mut margins).check(0, cost, || second);
+                let kept_of_second = f64::from(second) * f64::from(100 - percent) / 100.0;
+                let is_near = second != 255 && kept_of_second <= f64::from(cost);
+                assert_eq!(
+                    flags[0].contains(PixelFlags::AMBIGUOUS),
+                    is_near,
+                    "{cost}, then {second}, {percent} %"
+                );
+                assert_eq!(margins[0], second.wrapping_sub(cost));
+            }
+        }
+    }
+
+    #[test]
+    fn what_nobody_asks_for_is_not_sought() {
+        for (percent, wants_margins) in [(None, false), (None, true), (Some(5), false), (Some(5), true)] {
+            let (mut flags, mut margins) = ([PixelFlags::CLEAR; 3], [0; 3]);
+            let margins = if wants_margins { &mut margins[..] } else { &mut [] };
+            let mut unique = Unique::new(percent, &mut flags, margins);
+            let is_asked = percent.is_some() || wants_margins;
+            assert_eq!(unique.is_asked(), is_asked);
+            let mut sought = 0;
+            unique.check(1, 10, || {
+                sought += 1;
+                10
+            });
+            unique.checks_from(2)(20, &mut || {
+                sought += 1;
+                25
+            });
+            assert_eq!(sought, if is_asked { 2 } else { 0 });
+            let ambiguous = flags.map(|flags| flags.contains(PixelFlags::AMBIGUOUS));
+            assert_eq!(ambiguous, [false, percent.is_some(), false]);
+        }
+    }
+
+    #[test]
+    fn costs_beside_a_winner_are_those_of_its_neighbours() {
+        const LANES: usize = 16;
+        // The largest disparity stands in the first lane.
+        let cost = |disparity: usize| 10 + disparity as u8;
+        let at = |lane: usize| cost(LANES - 1 - lane);
+        for candidates in 1..=LANES {
+            for disparity in 0..candidates {
+                let below = disparity.checked_sub(1).map(cost);
+                let above = Some(disparity + 1).filter(|&above| above < candidates).map(cost);
+                let one = below.or(above).unwrap_or(cost(disparity));
+                let expected = below.zip(above).unwrap_or((one, one));
+                let found = beside(LANES, disparity as u8, candidates, at);
+                assert_eq!(found, expected, "{disparity} of {candidates}");
+            }
+        }
+    }
+
+    #[test]
+    fn lengths_are_limited_in_their_places() {
+        let mut lengths = [1, 200, 300, 4, 500];
+        Lengths(&mut lengths).limit_half_words(1..4, 250);
+        assert_eq!(lengths, [1, 200, 250, 4, 500]);
+        let mut lengths = [0u16; 5];
+        view_mut::<u16, u8>(&mut lengths)[..5].copy_from_slice(&[9, 8, 7, 6, 5]);
+        Lengths(&mut lengths).limit_bytes(1..4, 7);
+        assert_eq!(Lengths(&mut lengths).bytes(), [9, 7, 7, 6, 5]);
+        assert_eq!(Lengths(&mut lengths).half_words().len(), 5);
+    }
+}

@@ -220,3 +220,63 @@ impl<'a> RowWorkspace<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WIDTH: usize = 7;
+
+    #[test]
+    fn rows_have_their_places_one_after_the_other() {
+        let mut memory: [u32; 40] = core::array::from_fn(|word| word as u32);
+        let mut workspace = RowWorkspace::of_rest(&mut memory);
+        assert_eq!(workspace.costs().len(), 40);
+        assert_eq!(workspace.withheld_before(WIDTH).len(), WIDTH);
+        workspace.divide(WIDTH);
+        let ForWinners { winners, margins, workspace: rest } = workspace.for_winners(true);
+        assert_eq!((winners.width(), margins.len()), (WIDTH, WIDTH));
+        // Seven winners, and twice seven half-words in four words.
+        assert_eq!((rest.len(), rest[0]), (40 - 7 - 4 - 4, 15));
+        assert_eq!(workspace.margins(), [11, 0, 0, 0, 12, 0, 0]);
+        let ForAnswers { winners, right, .. } = workspace.for_answers();
+        assert_eq!((winners.width(), &*right), (WIDTH, &[7, 0, 8, 0, 9, 0, 10][..]));
+        let (lengths, sums) = workspace.for_smoothing();
+        assert_eq!((lengths.half_words().len(), sums.len()), (WIDTH, 2 * (40 - 15)));
+        assert_eq!(workspace.lengths().half_words(), [11, 0, 12, 0, 13, 0, 14]);
+        assert_eq!(workspace.spare(), [7, 0, 8, 0, 9, 0, 10]);
+        assert_eq!(workspace.confidences(), [0, 0, 0, 0, 1, 0, 0]);
+        let (confidences, withheld) = workspace.confidences_and_withheld();
+        assert_eq!((confidences.len(), &*withheld), (WIDTH, &[2, 0, 3, 0, 4, 0, 5][..]));
+        let Finished { confidences, withheld, masks: [left, right] } = workspace.finished();
+        assert_eq!((confidences.len(), &*withheld), (WIDTH, &[2, 0, 3, 0, 4, 0, 5][..]));
+        assert_eq!((&*left, &*right), (&[7, 0, 0, 0, 8, 0, 0][..], &[0, 9, 0, 0, 0, 10, 0][..]));
+    }
+
+    #[test]
+    fn a_row_without_margins_has_no_place_for_them() {
+        let mut memory = [0; 40];
+        let mut workspace = RowWorkspace::of_rest(&mut memory);
+        workspace.divide(WIDTH);
+        assert!(workspace.for_winners(false).margins.is_empty());
+        workspace.skip_row();
+        assert_eq!(workspace.lengths().half_words().len(), WIDTH);
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "the workspace of a row")]
+    fn what_is_not_there_yet_is_not_looked_at() {
+        RowWorkspace::of_rest(&mut [0; 40]).margins();
+    }
+
+    #[cfg(debug_assertions)]
+    #[test]
+    #[should_panic(expected = "from Winners to Winners")]
+    fn a_phase_comes_once() {
+        let mut memory = [0; 40];
+        let mut workspace = RowWorkspace::of_rest(&mut memory);
+        workspace.for_winners(false);
+        workspace.for_winners(false);
+    }
+}

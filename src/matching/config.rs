@@ -274,3 +274,83 @@ error_text!(ConfigError {
          cost + step + jump < 128, 3 cost + 2 jump < 255",
     Self::Smoothing => "smoothing radius: at most {}" (Checks::MOST_SMOOTHING),
 });
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::method::{Fast, Sgm};
+
+    #[test]
+    fn each_number_is_taken_up_to_its_limit() {
+        let plain = Config::for_method::<Fast>(40, 30, 32);
+        let with = |checks: Checks| Config { checks, ..plain };
+        let (width, disparities) = (64, 48);
+        for config in [
+            plain,
+            Config { width: 1, ..plain },
+            Config { width: 64, height: 1, ..plain },
+            Config { height: u16::MAX, disparities: 16, ..plain },
+            Config { disparities: 48, ..plain },
+            Config { min_disparity: Config::END - 32, ..plain },
+            with(Checks { uniqueness_percent: None, ..plain.checks }),
+            with(Checks { uniqueness_percent: Some(99), ..plain.checks }),
+            with(Checks { smoothing_radius: Checks::MOST_SMOOTHING, ..plain.checks }),
+            with(Checks { surface_step: Disparity::ONE_PIXEL, ..plain.checks }),
+        ] {
+            assert_eq!(config.check(width, disparities), Ok(()), "{config:?}");
+        }
+        let beyond = Disparity::from_raw(Disparity::ONE + 1);
+        let steps_rise = Penalties { step: [3, 4], ..Penalties::DEFAULT };
+        for (config, error) in [
+            (Config { width: 0, ..plain }, ConfigError::Width { given: 0, most: 64 }),
+            (Config { width: 65, ..plain }, ConfigError::Width { given: 65, most: 64 }),
+            (Config { width: 900, ..plain }, ConfigError::Width { given: 900, most: 64 }),
+            (Config { height: 0, ..plain }, ConfigError::Height),
+            (Config { disparities: 0, ..plain }, ConfigError::Disparities { given: 0, most: 48 }),
+            (Config { disparities: 15, ..plain }, ConfigError::Disparities { given: 15, most: 48 }),
+            (Config { disparities: 49, ..plain }, ConfigError::Disparities { given: 49, most: 48 }),
+            (Config { disparities: 256, ..plain }, ConfigError::Disparities { given: 256, most: 48 }),
+            (
+                Config { min_disparity: Config::END - 31, ..plain },
+                ConfigError::MinDisparity { most: Config::END - 32 },
+            ),
+            (
+                Config { min_disparity: u16::MAX, ..plain },
+                ConfigError::MinDisparity { most: Config::END - 32 },
+            ),
+            (with(Checks { uniqueness_percent: Some(100), ..plain.checks }), ConfigError::Uniqueness),
+            (with(Checks { uniqueness_percent: Some(255), ..plain.checks }), ConfigError::Uniqueness),
+            (
+                with(Checks { smoothing_radius: Checks::MOST_SMOOTHING + 1, ..plain.checks }),
+                ConfigError::Smoothing,
+            ),
+            (with(Checks { smoothing_radius: 255, ..plain.checks }), ConfigError::Smoothing),
+            (with(Checks { surface_step: beyond, ..plain.checks }), ConfigError::SurfaceStep),
+            (with(Checks { surface_step: Disparity::NONE, ..plain.checks }), ConfigError::SurfaceStep),
+            (
+                Config { penalties: Penalties { gradient: 0, ..Penalties::DEFAULT }, ..plain },
+                ConfigError::Gradient,
+            ),
+            (Config { penalties: steps_rise, ..plain }, ConfigError::Penalties),
+        ] {
+            assert_eq!(config.check(width, disparities), Err(error), "{config:?}");
+        }
+    }
+
+    #[test]
+    fn what_is_asked_for_is_looked_for() {
+        for (confidence, open_margin) in [(false, 0), (false, 1), (true, 0), (true, 52)] {
+            let checks = Checks { open_margin, ..Checks::DENSE };
+            let config = Config { confidence, checks, ..Config::for_method::<Sgm>(40, 30, 32) };
+            assert_eq!(config.needs_margins(), (confidence, open_margin) != (false, 0));
+        }
+        for (open_run, open_margin) in [(0, 0), (0, 1), (1, 0), (5, 52)] {
+            for fattening_slope in [Disparity::ZERO, Disparity::NONE] {
+                let checks = Checks { open_run, open_margin, fattening_slope, ..Checks::DENSE };
+                let is_open = (open_run, open_margin) != (0, 0);
+                assert_eq!(checks.look_for_open(), is_open);
+                assert_eq!(checks.look_for_edges(), is_open || fattening_slope == Disparity::ZERO);
+            }
+        }
+    }
+}

@@ -72,3 +72,35 @@ impl Config {
         Self { checks: filter.checks::<M>(self.noise), penalties, ..self }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::method::{Fast, Sgm};
+    use crate::matching::penalties::Penalties;
+
+    #[test]
+    fn each_filter_has_its_name_and_its_checks() {
+        assert_eq!(Filter::ALL.map(Filter::name), ["dense", "default", "strict"]);
+        for noise in Noise::ALL {
+            assert_eq!(Filter::Dense.checks::<Sgm>(noise), Checks::DENSE);
+            assert_eq!(Filter::Strict.checks::<Sgm>(noise), Sgm::STRICT);
+            assert_eq!(Filter::Default.checks::<Fast>(noise), Checks::DEFAULT);
+        }
+        let [low, high] = Sgm::DEFAULT_IN_NOISE;
+        assert_eq!(
+            [Noise::None, Noise::Low, Noise::High].map(|noise| Filter::Default.checks::<Sgm>(noise)),
+            [Sgm::DEFAULT, low, high]
+        );
+    }
+
+    #[test]
+    fn a_configuration_of_a_method_has_the_size_and_what_the_method_asks_for() {
+        let config = Config::for_method::<Sgm>(320, 240, 64);
+        assert_eq!((config.width, config.height, config.disparities), (320, 240, 64));
+        assert_eq!((config.checks, config.penalties), (Sgm::DEFAULT, Penalties::DEFAULT));
+        let in_noise = Config { noise: Noise::High, ..config }.with_filter::<Sgm>(Filter::Strict);
+        assert_eq!((in_noise.checks, in_noise.penalties), (Sgm::STRICT, Sgm::PENALTIES_IN_NOISE));
+        assert_eq!((in_noise.width, in_noise.height, in_noise.noise), (320, 240, Noise::High));
+    }
+}

@@ -52,3 +52,14 @@ pub enum KernelError {
 error_text!(KernelError {
     Self::Unavailable(kernel) => "kernel {}: this processor does not run it" (kernel.name()),
 });
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_kernel_has_its_name() {
+        let names = ["planes", "dsp", "helium", "lanes", "avx2", "avx512"];
+        assert_eq!(Kernel::ALL.map(Kernel::name), names);
+    }
+}

@@ -295,3 +295,66 @@ where
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::method::{External, Fast, Sgm, SgmEdge, SgmLean};
+
+    /// How many bytes more are given than a matcher takes.
+    fn spare<S: Method, const W: usize, const D: usize>() -> Option<usize> {
+        state_bytes::<S>(W, D).checked_sub(size_of::<Matcher<S, W, D>>())
+    }
+
+    #[test]
+    fn the_bytes_that_are_given_are_those_of_the_state_and_few_more() {
+        let spares = [
+            spare::<Sgm, 16, 16>(),
+            spare::<Sgm, 332, 48>(),
+            spare::<SgmLean, 320, 64>(),
+            spare::<SgmEdge, 700, 256>(),
+            spare::<External<Sgm>, 320, 64>(),
+        ];
+        let is_little = |spare: &Option<usize>| spare.is_some_and(|spare| spare <= FIXED_BYTES);
+        assert!(spares.iter().all(is_little), "{spares:?}");
+    }
+
+    #[test]
+    fn sizes_are_rounded_up_to_what_there_is_a_matcher_for() {
+        assert_eq!(state_bytes::<Sgm>(100, 17), state_bytes::<Sgm>(100, 32));
+        assert_eq!(state_bytes::<Sgm>(10, 32), state_bytes::<Sgm>(32, 32));
+        assert!(state_bytes::<Sgm>(33, 32) > state_bytes::<Sgm>(32, 32));
+    }
+
+    #[test]
+    fn lines_may_begin_anywhere_in_memory() {
+        let memory: [[u8; 16]; 2] = [[3; 16], [200; 16]].map(|line| {
+            let mut byte = 0;
+            line.map(|grey: u8| {
+                byte += 1;
+                grey.wrapping_mul(byte)
+            })
+        });
+        let mut matcher = Matcher::<Fast, 16, 16>::new();
+        for (kernel, width) in
+            Kernel::available().flat_map(|kernel| (1..=9).map(move |width| (kernel, width)))
+        {
+            let mut first = None;
+            for place in 0..4 {
+                // The same line, moved on by a byte each time.
+                let mut moved = [[0u8; 16]; 2];
+                for (moved, line) in moved.iter_mut().zip(&memory) {
+                    moved[place..place + width].copy_from_slice(&line[..width]);
+                }
+                let [left, right] = moved.each_ref().map(|line| [&line[place..place + width]; 5]);
+                matcher.set_kernel(kernel).expect("an available kernel");
+                matcher.start(&Config::for_method::<Fast>(width as u16, 1, 16)).expect("it fits");
+                matcher.push(&left, &right).expect("a line");
+                (1..=Matcher::<Fast, 16, 16>::DELAY).for_each(|_| matcher.flush().expect("a row is due"));
+                let mut row = [Disparity::NONE; 9];
+                row[..width].copy_from_slice(matcher.row().expect("it is out").disparities());
+                assert_eq!(*first.get_or_insert(row), row, "{} {width} {place}", kernel.name());
+            }
+        }
+    }
+}

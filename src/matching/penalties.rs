@@ -148,4 +148,52 @@ mod tests {
         }
         assert_eq!(accepted, 140_569);
     }
+
+    /// Every rule in its own words.
+    fn is_right(penalties: &Penalties) -> bool {
+        let Penalties { cost, step, jump, edges, .. } = *penalties;
+        let most = jump.into_iter().max().map_or(0, u32::from);
+        let (cost, first_step) = (u32::from(cost), u32::from(step[0]));
+        cost >= 1
+            && step[1] >= 1
+            && step[0] >= step[1]
+            && jump[0] >= step[0]
+            && jump[1] >= step[1]
+            && jump[2] >= step[1]
+            && edges[0] <= edges[1]
+            && cost + first_step + most < 128
+            && 3 * cost + 2 * most < 255
+    }
+
+    #[test]
+    fn each_rule_holds_at_its_limit() {
+        let jumps = [0, 1, 8, 9, 60, 103, 104, 111, 112, 126, 255];
+        let jumps = || {
+            jumps.into_iter().flat_map(move |a| jumps.into_iter().flat_map(move |b| jumps.map(|c| [a, b, c])))
+        };
+        let mut taken = 0;
+        for cost in [0, 1, 2, 8, 9, 15, 16, 17, 50, 51, 84, 85, 125, 126, 255] {
+            for step in [[0, 0], [1, 0], [1, 1], [1, 2], [8, 8], [8, 9], [9, 8], [60, 9], [63, 1], [255, 1]] {
+                for (jump, edges) in jumps().zip([[6, 12], [0, 0], [9, 8], [255, 255]].into_iter().cycle()) {
+                    let penalties = Penalties { gradient: 7, cost, step, jump, edges };
+                    assert_eq!(penalties.check().is_ok(), is_right(&penalties), "{penalties:?}");
+                    taken += usize::from(is_right(&penalties));
+                }
+            }
+        }
+        assert!(taken > 1000, "{taken}");
+        for gradient in 0..=255 {
+            let is_known = (1..=14).contains(&gradient);
+            let expected = if is_known { Ok(()) } else { Err(PenaltiesError::Gradient) };
+            assert_eq!(Penalties { gradient, ..Penalties::DEFAULT }.check(), expected, "{gradient}");
+        }
+    }
+
+    #[test]
+    fn each_change_has_its_step_and_jump() {
+        let penalties = Penalties { step: [18, 9], jump: [88, 28, 16], ..Penalties::DEFAULT };
+        let changes = penalties.changes().map(|change| (change.step, change.jump));
+        assert_eq!(changes, [(18, 88), (9, 28), (9, 16)]);
+        assert_eq!(penalties.in_noise(), Penalties { gradient: 9, ..penalties });
+    }
 }

@@ -176,3 +176,58 @@ fn select<S: WindowParameters, const MOST: usize>(
     };
     frame.backend.window::<S, MOST>(work, select);
 }
+
+#[cfg(test)]
+mod tests {
+    extern crate std;
+
+    use super::*;
+
+    struct Any<const RADIUS: usize, const BITS: usize, const COLUMN_BITS: usize, const SHIFT: usize>;
+
+    impl<const RADIUS: usize, const BITS: usize, const COLUMN_BITS: usize, const SHIFT: usize>
+        MethodParameters for Any<RADIUS, BITS, COLUMN_BITS, SHIFT>
+    {
+        const RADIUS_X: usize = RADIUS;
+        const RADIUS_Y: usize = RADIUS - 1;
+    }
+
+    impl<const RADIUS: usize, const BITS: usize, const COLUMN_BITS: usize, const SHIFT: usize>
+        WindowParameters for Any<RADIUS, BITS, COLUMN_BITS, SHIFT>
+    {
+        const BITS: usize = BITS;
+        const COLUMN_BITS: usize = COLUMN_BITS;
+        const COLUMN_SHIFT: usize = SHIFT;
+    }
+
+    fn is_refused<S: WindowParameters>() -> bool {
+        std::panic::catch_unwind(check::<S>).is_err()
+    }
+
+    #[test]
+    fn what_the_arithmetic_relies_on_is_checked() {
+        assert!(!is_refused::<Fast>() && !is_refused::<Block>());
+        // Three rows of five bits: 15, in four bits, and 5 x 15 in a window.
+        assert!(!is_refused::<Any<2, 5, 4, 0>>());
+        assert!(is_refused::<Any<2, 5, 3, 0>>());
+        assert!(is_refused::<Any<2, 6, 4, 0>>());
+        assert!(is_refused::<Any<2, 5, 9, 0>>());
+        // 50 in a column: 5 x 50 fits a byte, 5 x 51 is the number that no sum may be.
+        assert!(!is_refused::<Any<2, 16, 8, 0>>());
+        assert!(is_refused::<Any<2, 17, 8, 0>>());
+        // Half of 100, and of 102.
+        assert!(!is_refused::<Any<2, 33, 8, 1>>());
+        assert!(is_refused::<Any<2, 34, 8, 1>>());
+    }
+
+    #[test]
+    fn rows_and_tables_are_those_of_the_window() {
+        assert_eq!((rows::<Fast>(), rows::<Block>()), (8, 10));
+        assert_eq!(most_table_words::<Fast>(), TABLE_WORDS);
+        assert_eq!(most_table_words::<Block>(), TABLE_WORDS_OF_EIGHT);
+        let (bytes, tables) = if CODES_SHARE_A_BYTE { (1, TABLE_WORDS) } else { (2, 0) };
+        assert_eq!((code_bytes::<Fast>(), table_words::<Fast>()), (bytes, tables));
+        let tables = if CODES_SHARE_A_BYTE { TABLE_WORDS_OF_EIGHT } else { 0 };
+        assert_eq!((code_bytes::<Block>(), table_words::<Block>()), (2, tables));
+    }
+}

@@ -190,3 +190,107 @@ pub(super) fn refuse_unsure(frame: &mut Frame<'_>, newest: usize) {
         }
     });
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const WORDS: usize = 3;
+    const COUNT: usize = WORDS * BLOCKS;
+
+    /// Numbers below a bound, by chance.
+    fn chance() -> impl FnMut(u32) -> u32 {
+        let mut state = 7u32;
+        move |below| {
+            state = state.wrapping_mul(0x9e37_79b1).wrapping_add(0x7f4a_7c15);
+            (state >> 12) % below
+        }
+    }
+
+    fn bits(blocks: &[bool; COUNT]) -> [[u8; 4]; WORDS] {
+        core::array::from_fn(|word| {
+            let bits = (0..BLOCKS).filter(|bit| blocks[word * BLOCKS + bit]).map(|bit| 1u32 << bit);
+            bits.sum::<u32>().to_le_bytes()
+        })
+    }
+
+    #[test]
+    fn a_block_is_smooth_without_an_edge_and_where_little_changes_down_the_columns() {
+        let blocks = [
+            [0; 4],
+            [255; 4],
+            [0, 0, 0, 7],
+            [8, 0, 0, 0],
+            [0, 0, 9, 0],
+            [2, 2, 2, 2],
+            [4, 4, 4, 3],
+            [4, 4, 4, 4],
+            [5, 4, 4, 4],
+            [255, 0, 255, 0],
+            [0, 255, 0, 255],
+            [100, 101, 102, 103],
+        ];
+        let sum = |block: [u8; 4]| block.into_iter().map(i32::from).sum::<i32>();
+        for (above, below) in blocks.into_iter().flat_map(|above| blocks.map(|below| (above, below))) {
+            for least in [1, 8, 16, 17] {
+                for edges in [[0; 4], [0xfe; 4], [1, 0, 0, 0], [0, 0, 3, 0], [0, 0, 0, 0x81]] {
+                    let row = Smooth { above: &[above], below: &[below], edges: &[edges] };
+                    let is_even = (sum(above) - sum(below)).abs() < least;
+                    let is_smooth = is_even && edges.iter().all(|edges| edges & 1 == 0);
+                    let found = row.word(0, least as u32);
+                    assert_eq!(found, u32::from(is_smooth), "{above:?} {below:?} {edges:?} {least}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn smooth_blocks_are_open_that_are_joined_to_an_open_one() {
+        let mut chance = chance();
+        for round in 0..600 {
+            let rough = [2, 5, 20, 90, 400][round % 5];
+            let smooth: [bool; COUNT] = core::array::from_fn(|_| chance(rough) > 0);
+            let rare = [1, 3, 40, 100][round % 4];
+            let before: [bool; COUNT] = core::array::from_fn(|_| chance(rare) == 0);
+            // A pixel of each block that is not smooth has an edge, and all bits of older rows are set.
+            let edges: [[u8; BLOCK]; COUNT] = core::array::from_fn(|block| {
+                let mut edges = [0xfe; BLOCK];
+                edges[block % BLOCK] |= u8::from(!smooth[block]);
+                edges
+            });
+            let row = Smooth { above: &[[9; BLOCK]; COUNT], below: &[[9; BLOCK]; COUNT], edges: &edges };
+            let mut open = bits(&before);
+            push(&mut open, &row, 16);
+            let is_joined = |block: usize, other: usize| {
+                (block.min(other)..=block.max(other)).all(|between| smooth[between])
+            };
+            let expected = core::array::from_fn(|block| {
+                (0..COUNT).any(|other| before[other] && is_joined(block, other))
+            });
+            assert_eq!(open, bits(&expected), "round {round}");
+        }
+    }
+
+    #[test]
+    fn columns_of_open_blocks_and_of_those_beside_them_come_once() {
+        let mut chance = chance();
+        for round in 0..400 {
+            let width = 1 + chance((COUNT * BLOCK) as u32) as usize;
+            let rare = [1, 2, 6, 60, 1000][round % 5];
+            let open: [bool; COUNT] = core::array::from_fn(|_| chance(rare) == 0);
+            let mut counts = [0; COUNT * BLOCK];
+            let words = words(width);
+            assert_eq!(words, width.div_ceil(BLOCK).div_ceil(32) * 4);
+            for_columns(bits(&open).as_flattened(), width, &mut |columns| {
+                counts[columns].iter_mut().for_each(|count| *count += 1);
+            });
+            for (x, count) in counts.into_iter().enumerate() {
+                let block = x / BLOCK;
+                // What is beside the last word stands in no word of the row.
+                let last = words * 8 - 1;
+                let is_near = (block.saturating_sub(1)..=(block + 1).min(last)).any(|block| open[block]);
+                assert_eq!(count, u32::from(x < width && is_near), "{width}, column {x}");
+            }
+        }
+    }
+}

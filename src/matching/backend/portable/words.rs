@@ -308,4 +308,40 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn lanes_are_the_bytes_of_memory() {
+        let memory: [u32; 3] = [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12]].map(u32::from_le_bytes);
+        let cells = memory.map(Word::of);
+        for lane in 0..14 {
+            assert_eq!(Word::lane(&cells, lane), if lane < 12 { lane as u8 + 1 } else { 0 });
+        }
+        let (first, second) = (cells[0], cells[1]);
+        assert_eq!(second.after(first).0.to_le_bytes(), [4, 5, 6, 7]);
+        assert_eq!(first.before(second).0.to_le_bytes(), [2, 3, 4, 5]);
+        assert_eq!(Word::splat(0xa5).0.to_le_bytes(), [0xa5; 4]);
+        assert_eq!(Word::key_of_four(9).0.to_le_bytes(), [9; 4]);
+        let bytes = [0x0f, 0x33, 0x55, 0xff];
+        let (first, second) = (Word::of_bytes(bytes), Word::of_bytes([0x3c; 4]));
+        assert_eq!(first.or(second).0.to_le_bytes(), bytes.map(|byte| byte | 0x3c));
+        assert_eq!(first.and(second).0.to_le_bytes(), bytes.map(|byte| byte & 0x3c));
+        assert_eq!(Word::groups(&[1, 2, 3, 4, 5, 6, 7, 8, 9]), [[1, 2, 3, 4], [5, 6, 7, 8]]);
+        let mut memory = memory;
+        let bytes = view_mut::<u32, u8>(&mut memory);
+        assert_eq!((Word::cells(bytes).len(), Word::cells_mut(bytes).len()), (3, 3));
+        assert_eq!(Word::cells(bytes)[1].to_le_bytes(), [5, 6, 7, 8]);
+    }
+
+    #[test]
+    fn what_is_around_a_winner_is_raised() {
+        for lane in 0..16 {
+            let mut cells =
+                [[1, 2, 3, 4], [5, 6, 7, 8], [9, 10, 11, 12], [13, 14, 15, 16]].map(Word::of_bytes);
+            Word::raise_around(&mut cells, lane);
+            for (at, found) in (0..16).map(|at| (at, Word::lane(&cells, at))) {
+                let expected = if lane.abs_diff(at) <= BESIDE { 255 } else { at as u8 + 1 };
+                assert_eq!(found, expected, "{lane} {at}");
+            }
+        }
+    }
 }

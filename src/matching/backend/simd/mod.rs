@@ -260,3 +260,64 @@ pub(in crate::matching) fn columns_begin(memory: &[u8], count: usize) -> u8 {
     let before = memory.as_ptr().align_offset(LINE);
     if before < LINE && before + count <= memory.len() { before as u8 } else { 0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn columns_begin_with_a_line_of_the_cache_where_there_is_room() {
+        const LINE: usize = 64;
+        let memory = [0; 4 * LINE];
+        for (first, count) in (0..2 * LINE).flat_map(|first| (0..2 * LINE).map(move |count| (first, count))) {
+            let memory = &memory[first..];
+            let begin = usize::from(columns_begin(memory, count));
+            let before = memory.as_ptr().addr().next_multiple_of(LINE) - memory.as_ptr().addr();
+            let has_room = before + count <= memory.len();
+            assert_eq!(begin, if has_room { before } else { 0 }, "{first} {count}");
+        }
+    }
+
+    #[test]
+    fn kernels_are_chosen_by_name() {
+        for kernel in Kernel::available() {
+            assert_eq!(Backend::of(kernel).map(Isa::kernel), Some(kernel));
+        }
+        assert_eq!(Backend::of(Kernel::Dsp), None);
+        assert_eq!(Backend::of(Kernel::Helium), None);
+        assert_eq!(Kernel::available().last(), Some(Kernel::detect()), "the fastest");
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    #[test]
+    fn a_kernel_is_there_where_the_processor_has_its_instructions() {
+        extern crate std;
+        use std::is_x86_feature_detected as has;
+        let has_avx2 = has!("avx2") && has!("lzcnt");
+        let has_avx512 = has!("avx512f")
+            && has!("avx512bw")
+            && has!("avx512cd")
+            && has!("avx512dq")
+            && has!("avx512vl")
+            && has!("avx512vbmi")
+            && has!("avx512bitalg");
+        assert_eq!(Backend::of(Kernel::Avx2).is_some(), has_avx2);
+        assert_eq!(Backend::of(Kernel::Avx512).is_some(), has_avx2 && has_avx512);
+    }
+
+    #[test]
+    fn candidates_are_whole_steps_that_there_is_room_for() {
+        for (disparities, most) in
+            (16..=256usize).flat_map(|d| (16..=256).step_by(16).map(move |most| (d, most)))
+        {
+            if disparities <= most {
+                let steps = disparities.div_ceil(16) * 16;
+                assert_eq!(Backend::Lanes.candidates(disparities, most), steps);
+                // In words of 32 where the room is whole words.
+                let words = disparities.div_ceil(32) * 32;
+                let planes = if most % 32 == 0 { words } else { steps };
+                assert_eq!(Backend::Planes.candidates(disparities, most), planes, "{disparities} {most}");
+            }
+        }
+    }
+}

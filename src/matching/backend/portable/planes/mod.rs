@@ -99,3 +99,59 @@ fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(
         windows.winners_of_many::<S>(entering, leaving, winners, check);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::memory::winners::{Unique, Winner};
+    use crate::matching::memory::workspace::{ForWinners, RowWorkspace};
+    use crate::matching::method::{Block, Fast};
+
+    const WIDTH: usize = 70;
+
+    /// The sums and the winners of a frame's first row, in a matcher that has room for `MOST` disparities.
+    fn first_row<S: WindowParameters, const MOST: usize>(
+        stride: usize,
+    ) -> ([u32; (WIDTH + 2 * OUTSIDE) * 16], [Winner; WIDTH]) {
+        let line: [u8; WIDTH + 9] = core::array::from_fn(|x| (x * x * 7 % 251 + x % 5) as u8);
+        let lines = [&[&line[..WIDTH]; 5], &[&line[9..]; 5]];
+        let (mut codes, mut columns) = ([0u32; WIDTH / 2], [0; (WIDTH + 2 * OUTSIDE) * 16]);
+        let mut memory = [0; 1000];
+        let mut workspace = RowWorkspace::of_rest(&mut memory);
+        let codes = &mut view_mut::<u32, u8>(&mut codes)[..2 * WIDTH];
+        census::<S>(CensusWork { lines, min_disparity: 0, workspace: workspace.costs(), codes });
+        workspace.divide(WIDTH);
+        let ForWinners { winners, workspace: room, .. } = workspace.for_winners(false);
+        let work = WindowWork {
+            width: WIDTH,
+            stride,
+            min_disparity: 0,
+            enter: Some(codes),
+            leave: None,
+            columns: &mut view_mut::<u32, u8>(&mut columns)[..(WIDTH + 2 * OUTSIDE) * stride],
+            workspace: room,
+        };
+        let unique = Unique::new(None, &mut [], &mut []);
+        window::<S, MOST>(work, Some(Select { disparities: stride, winners, unique }));
+        let winners = workspace.for_answers().winners.words();
+        (columns, core::array::from_fn(|x| winners[x]))
+    }
+
+    fn capacities<S: WindowParameters>() {
+        let (of_16, of_32, of_64) = (first_row::<S, 0>(16), first_row::<S, 0>(32), first_row::<S, 0>(64));
+        for (columns, winners) in [&of_16, &of_32, &of_64] {
+            assert!(columns.iter().any(|&sums| sums != 0));
+            assert!(winners.iter().any(|winner| winner.disparity() == 9));
+        }
+        assert!(first_row::<S, 16>(16) == of_16);
+        assert!(first_row::<S, 32>(32) == of_32);
+        assert!(first_row::<S, 64>(32) == of_32, "fewer than there is room for");
+        assert!(first_row::<S, 64>(64) == of_64);
+    }
+
+    #[test]
+    fn the_code_of_a_capacity_gives_the_rows_of_any() {
+        capacities::<Fast>();
+        capacities::<Block>();
+    }
+}

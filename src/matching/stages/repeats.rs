@@ -246,4 +246,24 @@ mod tests {
             core::array::from_fn(|x| if bright.iter().any(|run| run.contains(&x)) { 180 } else { 60 });
         assert_eq!(marked(&line, 40), 0);
     }
+
+    #[test]
+    fn a_pattern_ends_a_period_behind_its_last_rise() {
+        // From column 60 on the squares are too faint to rise, while each pixel still repeats.
+        let bright = |x: usize| x / 6 % 2 == 1;
+        let squares: [u8; 80] = core::array::from_fn(|x| match (bright(x), x < 60) {
+            (true, _) => 76,
+            (false, true) => 60,
+            (false, false) => 61,
+        });
+        // The last rise is in column 54: up to two pixels behind column 66.
+        let expected = 0x0001_fffe;
+        assert_eq!(marked(&squares, 12), expected);
+        // Another rise, farther away.
+        let mut longer = [61; 128];
+        for (x, pixel) in longer.iter_mut().enumerate() {
+            *pixel = squares.get(x).copied().unwrap_or(if x < 110 { 0 } else { 200 });
+        }
+        assert_eq!(marked(&longer, 12), expected);
+    }
 }

@@ -38,8 +38,9 @@ pub mod mutant {
     }
 }
 "#;
-/// What [`CHOICE`] asks of the compiler.
-const FEATURES: &str = "#![feature(core_intrinsics, const_eval_select)]\n#![allow(internal_features)]\n";
+/// What [`CHOICE`] asks of the compiler, and mutants, whose constants may overflow.
+const FEATURES: &str = "#![feature(core_intrinsics, const_eval_select)]\n\
+                        #![allow(internal_features, arithmetic_overflow, unconditional_panic)]\n";
 
 /// The mutants, and the programs that they are in.
 pub struct Tree {

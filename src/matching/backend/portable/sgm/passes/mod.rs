@@ -247,3 +247,91 @@ fn mask(stride: usize, candidates: usize) -> &'static [u8] {
     let begin = 256usize.saturating_sub(masked);
     part(MASKS, begin..begin + stride)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::matching::backend::portable::words::Word;
+    use crate::matching::memory::views::view_mut;
+    use crate::matching::penalties::Penalties;
+    use crate::units::PixelFlags;
+
+    const WIDTH: usize = 30;
+    const MOST: usize = 48;
+    const ROWS: usize = 4;
+    /// Words of the most candidates.
+    const WORDS: usize = MOST / 4;
+
+    /// What is found of a row: of each pixel the disparity, its cost and those beside it, and the margins.
+    type Row = ([Option<(u8, u8, (u8, u8))>; WIDTH], [u8; WIDTH], [PixelFlags; WIDTH]);
+
+    #[derive(Clone, Copy, Debug)]
+    struct Size {
+        width: usize,
+        stride: usize,
+        disparities: usize,
+        min_disparity: usize,
+    }
+
+    /// The rows of a frame of costs by chance, cell by cell or path by path.
+    fn frame(size: Size, is_alternate: bool) -> [Row; ROWS] {
+        let mut state = size.width as u32;
+        let mut chance = |below: u32| {
+            state = state.wrapping_mul(0x9e37_79b1).wrapping_add(0x7f4a_7c15);
+            ((state >> 12) % below) as u8
+        };
+        let (mut costs, mut sums) = ([0u32; WIDTH * WORDS], [0u32; WIDTH * WORDS]);
+        let mut top = [0u32; (WIDTH + COLUMNS_OFF) * WORDS];
+        let Size { width, stride, disparities, min_disparity } = size;
+        let mut above = [0; WIDTH];
+        core::array::from_fn(|row| {
+            let costs = &mut view_mut::<u32, u8>(&mut costs)[..width * stride];
+            costs.fill_with(|| chance(u32::from(Penalties::DEFAULT.cost) + 1));
+            let here: [u8; WIDTH] = core::array::from_fn(|_| chance(4) * 7);
+            let mut work = PathWork {
+                width,
+                stride,
+                disparities,
+                min_disparity,
+                penalties: &Penalties::DEFAULT,
+                gradient_shift: 0,
+                costs,
+                top: &mut view_mut::<u32, u8>(&mut top)[..(width + COLUMNS_OFF) * stride],
+                sums: &mut view_mut::<u32, u8>(&mut sums)[..width * stride],
+                workspace: &mut [],
+            };
+            let mut found: Row = ([None; WIDTH], [0; WIDTH], [PixelFlags::CLEAR; WIDTH]);
+            let (winners, margins, flags) = (&mut found.0, &mut found.1, &mut found.2);
+            let unique = Unique::new(Some(5), flags, margins);
+            let put = |x: usize, found: Found| winners[x] = Some((found.disparity, found.cost, found.beside));
+            let last_row = above;
+            let guide = Guide { here: &here, above: (row > 0).then_some(&last_row), row };
+            if is_alternate {
+                alternate::select::<Word, { WORDS + 1 }>(&mut work, guide, unique, put);
+            } else {
+                select::select::<Word, WORDS, false>(&mut work, guide, unique, put);
+            }
+            above = here;
+            found
+        })
+    }
+
+    #[test]
+    fn cell_by_cell_and_path_by_path_winners_are_the_same() {
+        let mut all = [false; MOST];
+        for (width, stride) in [1, 2, 3, 7, 30].into_iter().flat_map(|width| [16, 32, 48].map(|s| (width, s)))
+        {
+            for (fewer, min_disparity) in [(0, 0), (1, 0), (15, 2), (0, 20), (7, 29)] {
+                let size = Size { width, stride, disparities: stride - fewer, min_disparity };
+                let rows = frame(size, false);
+                for row in &rows {
+                    let has_winner = |x: &usize| (min_disparity..width).contains(x);
+                    assert!((0..WIDTH).all(|x| row.0[x].is_some() == has_winner(&x)), "{size:?}");
+                    row.0.iter().flatten().for_each(|(disparity, ..)| all[usize::from(*disparity)] = true);
+                }
+                assert!(frame(size, true) == rows, "{size:?}");
+            }
+        }
+        assert!(all[..30].iter().filter(|&&found| found).count() > 20, "{all:?}");
+    }
+}

@@ -194,6 +194,67 @@ pub(super) fn agreeing_with<T: Real>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::linear::skew;
+    use core::f64::consts::FRAC_2_PI;
+
+    /// A plane far away that both images show at the same places, for cameras with that epipole.
+    fn far_away(epipole: &Vector3<f64>) -> Plane<f64> {
+        let at = |x: f64, y: f64| Correspondence::new(x, y, x, y);
+        Plane::through(&skew(epipole), [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)]).expect("an epipole")
+    }
+
+    /// Cameras side by side: all numbers of its plane are whole.
+    fn beside() -> (Vector3<f64>, Plane<f64>) {
+        (Vector3::x(), far_away(&Vector3::x()))
+    }
+
+    /// A camera that has moved towards what is seen at (300, -200), and matches with parallaxes along their
+    /// lines and up to so many px across them.
+    fn forwards<const N: usize>(across: f64) -> (Vector3<f64>, Plane<f64>, [Correspondence<f64>; N]) {
+        let epipole = Vector3::new(300.0, -200.0, 1.0);
+        let seen = core::array::from_fn(|i| {
+            let on = Point2::new((i * 37 % 11) as f64 * 20.0, (i * 53 % 13) as f64 * 15.0);
+            let along = (epipole.xy() - on.coords).normalize();
+            let parallax = (1.1 + (i % 3) as f64 * 0.2) * f64::powi(2.0, i as i32 % 10 - 1);
+            let off = across * ((i % 7) as f64 - 3.0) / 3.0;
+            let to = on + along * parallax + nalgebra::Vector2::new(-along.y, along.x) * off;
+            Correspondence { first: to, second: on }
+        });
+        (epipole, far_away(&epipole), seen)
+    }
+
+    /// Counts of what is farther than the root of `least` px from where the plane far away shows it: all, what
+    /// agrees, and what would by chance, of those within the root of `agreeing` px of their lines.
+    fn counted(
+        seen: &[Correspondence<f64>],
+        (least, agreeing): (f64, f64),
+        agrees: impl Fn(&Correspondence<f64>) -> bool,
+    ) -> [(f64, f64, f64); OCTAVES] {
+        let mut counts = [(0.0, 0.0, 0.0); OCTAVES];
+        for s in seen {
+            let parallax = (s.first - s.second).norm();
+            if parallax * parallax > least {
+                let octave = (parallax / least.sqrt()).log2().floor() as usize;
+                let (all, agree, chance) = &mut counts[octave.min(OCTAVES - 1)];
+                let x = (agreeing.sqrt() / parallax).min(1.0);
+                *all += 1.0;
+                *chance += x * FRAC_2_PI + (1.0 - FRAC_2_PI) * x.powi(3);
+                *agree += f64::from(u8::from(agrees(s)));
+            }
+        }
+        counts
+    }
+
+    /// Whether the octaves are those, and as many agree as in all of them.
+    fn assert_counts(octaves: &Octaves<f64>, expected: &[(f64, f64, f64); OCTAVES]) {
+        for (found, expected) in octaves.counts.iter().zip(expected) {
+            assert_eq!((found.0, found.1), (expected.0, expected.1), "{:?} {expected:?}", octaves.counts);
+            assert!((found.2 - expected.2).abs() < 1e-9, "{found:?} {expected:?}");
+        }
+        let (all, agree) = expected.iter().fold((0.0, 0.0), |(a, b), counts| (a + counts.0, b + counts.1));
+        assert_eq!(octaves.agree() as f64, agree);
+        assert!(expected.iter().all(|counts| counts.1 > 0.0) && agree < 0.6 * all, "{expected:?}");
+    }
 
     #[test]
     fn worked_by_hand() {
@@ -212,5 +273,145 @@ mod tests {
         (octaves.counts[2], octaves.agree) = ((2.0, 2.0, 0.1), 2);
         assert!(octaves.evidence() == 0.0 && !octaves.is_sure());
         assert_eq!([1.0, 3.9, 4.1, 17.0, 1e9].map(|px2| Octaves::of(px2, 1.0)), [0, 0, 1, 2, OCTAVES - 1]);
+    }
+
+    #[test]
+    fn an_octave_begins_where_the_parallax_doubles() {
+        for octave in 1..OCTAVES {
+            // Twice the parallax is four times its square.
+            let begin = 3.0 * f64::powi(4.0, octave as i32);
+            assert_eq!([begin * 0.999, begin].map(|px2| Octaves::of(px2, 3.0)), [octave - 1, octave]);
+        }
+        // The last one has no end.
+        for octave in OCTAVES..OCTAVES + 4 {
+            assert_eq!(Octaves::of(3.5 * f64::powi(4.0, octave as i32), 3.0), OCTAVES - 1);
+        }
+    }
+
+    #[test]
+    fn chance_is_an_angle_in_any_direction() {
+        let mut octaves = Octaves::<f64>::NONE;
+        // Within half of its parallax of a line: of all directions those within 30 degrees, a third.
+        octaves.count(5, 16.0, 4.0);
+        let half = 0.5 * FRAC_2_PI + (1.0 - FRAC_2_PI) / 8.0;
+        assert_eq!(octaves.counts[5], (1.0, 0.0, half));
+        assert!(half > 1.0 / 3.0 && half < 0.37, "a little more than a third: {half}");
+        // All directions, where the distance is more than the parallax.
+        octaves.count(5, 16.0, 20.0);
+        assert_eq!((octaves.counts[5].0, octaves.counts[5].2), (2.0, half + 1.0));
+        octaves.agrees(5);
+        octaves.agrees(5);
+        octaves.agrees(3);
+        assert_eq!((octaves.counts[5].1, octaves.counts[3].1, octaves.agree()), (2.0, 1.0, 3));
+    }
+
+    #[test]
+    fn octaves_say_something_where_more_agree_than_by_chance() {
+        let evidence = |counts: &[(f64, f64, f64)]| {
+            let mut octaves = Octaves::<f64>::NONE;
+            octaves.counts[..counts.len()].copy_from_slice(counts);
+            octaves.agree = counts.iter().map(|counts| counts.1 as usize).sum();
+            octaves.evidence()
+        };
+        // All agree: 10 ln (1 / 0.1), of which two made the estimate.
+        let all = 10.0 * 10.0_f64.ln();
+        assert!((evidence(&[(10.0, 10.0, 1.0)]) - all * 0.8).abs() < 1e-12);
+        // Two octaves add up, one with fewer than by chance counts for what made the estimate alone.
+        let most = 10.0 * (0.8 * 8.0_f64.ln() + 0.2 * (0.2_f64 / 0.9).ln());
+        let found = evidence(&[(10.0, 10.0, 1.0), (10.0, 8.0, 1.0), (20.0, 2.0, 6.0)]);
+        assert!((found - (all + most) * 18.0 / 20.0).abs() < 1e-12, "{found}");
+        // What never happens by chance is as good as once in a million times.
+        assert!((evidence(&[(5.0, 5.0, 0.0)]) - 5.0 * 1e6_f64.ln() * 0.6).abs() < 1e-9);
+        // One that agrees made nothing, no more than two.
+        assert_eq!([evidence(&[(1.0, 1.0, 0.1)]), evidence(&[])], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn it_is_sure_when_the_best_of_all_pairs_is_not_as_good_by_chance() {
+        // 30 in two octaves, of which 20 agree, more or less probably so.
+        let (mut sure, mut unsure) = (0, 0);
+        for step in 0..1000 {
+            let chance = f64::from(step) * 0.01;
+            let mut octaves = Octaves::<f64>::NONE;
+            (octaves.counts[1], octaves.counts[4]) = ((15.0, 10.0, chance), (15.0, 10.0, chance));
+            octaves.agree = 20;
+            let expected = octaves.evidence() > 2.0 * 31.0_f64.ln() + 7.0;
+            assert_eq!(octaves.is_sure(), expected, "{chance}: {}", octaves.evidence());
+            if expected { sure += 1 } else { unsure += 1 }
+        }
+        assert!(sure > 100 && unsure > 100, "{sure} {unsure}");
+    }
+
+    #[test]
+    fn what_is_off_a_plane_is_counted_by_its_parallax() {
+        let (epipole, plane, seen) = forwards::<90>(5.0);
+        let off = OffPlanes::of(&plane, &seen, 2.0, 4.0);
+        let line = |s: &Correspondence<f64>| s.second - Point2::new(300.0, -200.0);
+        let agrees = |s: &Correspondence<f64>| {
+            line(s).normalize().perp(&(s.first - s.second)).abs() < 2.0
+        };
+        let expected = counted(&seen, (2.0, 4.0), agrees);
+        assert_eq!(off.len() as f64, expected.iter().map(|counts| counts.0).sum::<f64>());
+        // The size and the sign of an epipole say nothing.
+        for size in [1.0, -3.0, 0.01] {
+            assert_counts(&off.agreeing_with(&(epipole * size)), &expected);
+        }
+    }
+
+    #[test]
+    fn what_is_off_a_plane_agrees_with_a_matrix() {
+        let (epipole, plane, mut seen) = forwards::<90>(5.0);
+        // A place that is too far away to be squared is left out.
+        seen[4].second.x = 1e200;
+        let f = skew(&epipole);
+        let agrees = |s: &Correspondence<f64>| {
+            let (squared, steep) = crate::geometry::robust::sprt::sampson(&f, s);
+            squared / steep < 2.0
+        };
+        let expected = counted(&[&seen[..4], &seen[5..]].concat(), (2.0, 4.0), agrees);
+        assert_counts(&agreeing_with(&f, &plane, &seen, 2.0, 2.0), &expected);
+    }
+
+    #[test]
+    fn what_lies_on_a_limit_is_on_the_plane_and_off_the_line() {
+        let (epipole, plane) = beside();
+        // Off to the side by 2 and 3 px, and 2 and 1 px off the line.
+        let seen = [(2.0, 0.0), (3.0, 2.0), (3.0, 1.0)].map(|(u, v)| Correspondence::new(u, v, 0.0, 0.0));
+        let off = OffPlanes::of(&plane, &seen, 4.0, 4.0);
+        assert_eq!((off.len(), off.agreeing_with(&epipole).agree()), (2, 1));
+        // Sampson's distance is half of that, squared.
+        let octaves = agreeing_with(&skew(&epipole), &plane, &seen, 4.0, 2.0);
+        assert_eq!((octaves.counts[0].0, octaves.agree()), (2.0, 1));
+    }
+
+    #[test]
+    fn every_other_or_every_third_is_held_of_many() {
+        let (_, plane) = beside();
+        let seen: [_; 300] = core::array::from_fn(|i| Correspondence::new(9.0, i as f64, 0.0, i as f64));
+        let held = |count: usize| OffPlanes::of(&plane, &seen[..count], 4.0, 4.0).len();
+        assert_eq!([0, 1, 128, 129, 256, 257, 300].map(held), [0, 1, 128, 65, 128, 86, 100]);
+        // What has no finite parallax is not held.
+        let far = [Correspondence::new(0.0, 0.0, 1e200, 0.0), seen[0]];
+        assert_eq!(OffPlanes::of(&plane, &far, 4.0, 4.0).len(), 1);
+    }
+
+    #[test]
+    fn two_off_a_plane_have_an_epipole() {
+        let (epipole, plane, seen) = forwards::<20>(0.0);
+        let off = OffPlanes::of(&plane, &seen, 1.0, 2.0);
+        let mut pairs = 0;
+        for (one, two) in (0..off.len()).flat_map(|one| (0..one).map(move |two| (one, two))) {
+            let Some(found) = off.epipole(one, two) else { continue };
+            assert!((found.norm() - 1.0).abs() < 1e-12, "{found}");
+            // Lines that meet at a blunt angle say where.
+            let [a, b] = [one, two].map(|at| (off.points[at].on_plane.coords - epipole.xy()).normalize());
+            if a.perp(&b).abs() > 0.3 {
+                let there = Point2::from_homogeneous(found).expect("no point at infinity");
+                assert!((there.coords - epipole.xy()).norm() < 1e-6, "{there}");
+                pairs += 1;
+            }
+        }
+        assert!(pairs > 20, "{pairs}");
+        assert!(off.epipole(3, 3).is_none() && off.epipole(0, off.len()).is_none());
     }
 }

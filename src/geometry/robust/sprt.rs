@@ -164,6 +164,28 @@ mod tests {
     }
 
     #[test]
+    fn what_is_off_by_the_width_is_no_inlier() {
+        let loss = Biweight { width_squared: 8.0 };
+        let score = |rows: f64| {
+            let seen = off_by([0.0, rows]);
+            Sprt::new().score(&RECTIFIED, &seen, loss, 0.0, (0, 1)).expect("more than nothing").inliers
+        };
+        assert_eq!([3.99, 4.0, 4.01].map(score), [2, 1, 1]);
+    }
+
+    #[test]
+    fn a_score_that_is_as_good_as_the_best_is_not_better() {
+        let seen = off_by([0.0; 4]);
+        let score = |best: f64| Sprt::new().score(&RECTIFIED, &seen, LOSS, best, (0, 1));
+        assert!(score(3.999).is_some() && score(4.0).is_none());
+        // With an outlier last, three gains cannot become more than three.
+        let seen = off_by([0.0, 0.0, 0.0, 9.0]);
+        let mut sprt = Sprt::new();
+        assert!(sprt.score(&RECTIFIED, &seen, LOSS, 3.0, (0, 1)).is_none());
+        assert_eq!((sprt.chance, sprt.bad), ((5.0, 44.0), 0.05), "it is counted, and nothing learnt of it");
+    }
+
+    #[test]
     fn odds_of_a_hundred_drop_an_estimate() {
         // Nine in ten agree with a good estimate and one in twenty with a bad one: an outlier makes a bad one
         // 9.5 times as likely, two of them 90 times, three more than a hundred times.
@@ -197,6 +219,9 @@ mod tests {
         let mut sprt = Sprt::<f64>::new();
         // A twentieth, less than six fifths of which are no more.
         sprt.learn(0.059);
+        assert_eq!((sprt.inlier_ratio, sprt.outlier_ratio), (1.0, 1.0));
+        // Nor are six fifths of it.
+        sprt.learn(0.06);
         assert_eq!((sprt.inlier_ratio, sprt.outlier_ratio), (1.0, 1.0));
         sprt.learn(0.061);
         assert!((sprt.inlier_ratio - 0.05 / 0.061).abs() < 1e-12);

@@ -347,9 +347,7 @@ mod tests {
         let (epipole, plane, seen) = forwards::<90>(5.0);
         let off = OffPlanes::of(&plane, &seen, 2.0, 4.0);
         let line = |s: &Correspondence<f64>| s.second - Point2::new(300.0, -200.0);
-        let agrees = |s: &Correspondence<f64>| {
-            line(s).normalize().perp(&(s.first - s.second)).abs() < 2.0
-        };
+        let agrees = |s: &Correspondence<f64>| line(s).normalize().perp(&(s.first - s.second)).abs() < 2.0;
         let expected = counted(&seen, (2.0, 4.0), agrees);
         assert_eq!(off.len() as f64, expected.iter().map(|counts| counts.0).sum::<f64>());
         // The size and the sign of an epipole say nothing.

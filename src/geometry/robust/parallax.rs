@@ -131,6 +131,7 @@ mod tests {
     use super::super::factored::Factored;
     use super::super::frame::Frame;
     use super::super::random::Random;
+    use super::super::ransac::Estimator;
     use super::super::refine::Matrix;
     use super::super::sprt::Score;
     use super::*;
@@ -249,6 +250,26 @@ mod tests {
         search.leave(&plane());
         assert!(error(&search) < 0.5, "{}", error(&search));
         assert_eq!(search.score.inliers, 76);
+    }
+
+    #[test]
+    fn a_sample_on_the_wall_leads_to_the_scene() {
+        let seen = scene::<16, 76>(0.2, 99);
+        let mut search = search(&seen);
+        // Five of the sample are on the wall, and so an epipole elsewhere is as good.
+        let f = fundamental(&Vector3::new(-0.2, 0.9, 1e-3));
+        let [first, second] = search.frames.each_ref().map(Frame::inverse);
+        let in_frames = product(&product(&first.transpose(), &f), &second);
+        search.consider(&in_frames, &[20, 25, 33, 41, 50, 58, 70]);
+        assert!(error(&search) < 0.5, "{}", error(&search));
+        assert_eq!(search.score.inliers, 76);
+        // What has passed the epipole was behind a camera in between: that is not even scored.
+        let mut search = self::search(&seen);
+        let wall = wall().0 * seen[15].second.to_homogeneous();
+        let epipole = wall / wall.z + seen[15].first.to_homogeneous();
+        let in_frames = product(&product(&first.transpose(), &fundamental(&epipole)), &second);
+        search.consider(&in_frames, &[20, 25, 33, 41, 50, 58, 15]);
+        assert!(search.best.is_none() && taken(&mut search) == 0);
     }
 
     #[test]

@@ -307,4 +307,52 @@ mod tests {
         // Two of them are on their lines.
         assert_eq!([1e-9, 1e9].map(problem), [2, 12]);
     }
+
+    #[test]
+    fn steps_are_damped_taken_and_refused_by_marquardts_rules() {
+        let (seen, frames) = (seen(0.02), frames());
+        let loss = Biweight { width_squared: 4.0 };
+        let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+        assert!(problem.is_better(-3.0, -3.5) && !problem.is_better(-3.0, -3.0));
+        assert!(!problem.is_better(-3.0, -2.5));
+        // The damping is a share of the diagonal's element.
+        assert_eq!(problem.damped(8.0, 0.25), 10.0);
+        // A tenth after each step, a millionth at least; sixteen times as much after one that is none.
+        assert!((problem.after_taken(0.5) - 0.05).abs() < 1e-15 && problem.after_taken(2e-6) == 1e-6);
+        assert_eq!(problem.after_refused(0.5, &along(3, -0.1)), Some(8.0));
+        // It has settled when the gain grows by no more than a ten millionth of it.
+        let settled = [0.0, 0.9e-6, 1.1e-6, 1.0].map(|more| problem.is_settled(-10.0, -10.0 - more));
+        assert_eq!(settled, [true, true, false, false]);
+        // A step of 1.5e-10 is one to rounding: a smaller one than that is not tried.
+        let tried = [0.0, 1e-10, 2e-10, f64::INFINITY, f64::NAN]
+            .map(|by| problem.after_refused(1.0, &along(2, by)).is_some());
+        assert_eq!(tried, [false, false, true, false, false]);
+    }
+
+    #[test]
+    fn in_f32_rounding_settles_it() {
+        let seen: [_; 12] = seen(0.02)
+            .map(|s| Correspondence { first: s.first.cast::<f32>(), second: s.second.cast::<f32>() });
+        let frames = Frame::of_points(&seen).expect("points that are apart");
+        let loss = Biweight { width_squared: 4.0_f32 };
+        let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+        // Four times the rounding of 10 is 4.8e-6, a ten millionth would be 1e-6.
+        let settled = [3.8e-6, 5.8e-6].map(|more| problem.is_settled(-10.0, -10.0 - more));
+        assert_eq!(settled, [true, false]);
+    }
+
+    #[test]
+    fn a_refinement_ends_where_its_matches_are() {
+        // From an estimate that is off: all twenty steps, or none at all.
+        let (seen, frames) = (seen(0.0), frames());
+        let loss = Biweight { width_squared: 1e4 };
+        let start = estimate().moved(&[0.02, -0.01, 0.015, -0.02, 0.01, 0.02, -0.03]);
+        let refine = |steps: usize| {
+            let found = refine(start, Matrix::Fundamental, &seen, &frames, loss, (0, steps)).matrix();
+            let truth = estimate().matrix();
+            (found - truth).amax().min((found + truth).amax())
+        };
+        let off = (start.matrix() - estimate().matrix()).amax();
+        assert!(refine(0) == off && refine(1) < 0.5 * off && refine(20) < 1e-6, "{off} {}", refine(20));
+    }
 }

@@ -229,4 +229,42 @@ mod tests {
         let (found, squares) = problem.within(&pose, 3.0);
         assert!(found == count && (squares - sum).abs() < 1e-9 && (1..8).contains(&count), "{found} {count}");
     }
+
+    #[test]
+    fn a_step_is_taken_while_the_gain_grows() {
+        let landmarks = landmarks(8.0);
+        let problem = problem(&landmarks);
+        assert!(problem.is_better(-3.0, -3.5) && !problem.is_better(-3.0, -3.0));
+        assert!(!problem.is_better(-3.0, -2.5));
+        // It has settled when the gain grows by no more than 1.5e-8 of it.
+        let settled = [0.0, 1e-7, 2e-7, 1.0].map(|more| problem.is_settled(-10.0, -10.0 - more));
+        assert_eq!(settled, [true, true, false, false]);
+        // Gauss and Newton have no shorter step.
+        assert_eq!(problem.after_refused(1.0, &along(0, 1.0)), None);
+    }
+
+    #[test]
+    fn a_pose_is_refined_to_the_landmarks() {
+        let (landmarks, (_, pose)) = (landmarks(0.0), camera_and_pose());
+        let problem = problem(&landmarks);
+        let start = pose.moved(&[2e-3, -1e-3, 1e-3, 2e-3, 1e-3, -3e-3]);
+        let (found, information) = problem.refined(start, 12);
+        assert!((found.translation() - pose.translation()).norm() < 1e-9, "{found:?}");
+        assert!((found.rotation() - pose.rotation()).amax() < 1e-9, "{found:?}");
+        let there = problem.equations(&found, None).expect("no bound").matrix;
+        for (row, expected) in information.iter().flatten().zip(there.iter().flatten()) {
+            assert!((row - expected).abs() < 1e-6 * (1.0 + expected.abs()), "{row} {expected}");
+        }
+        assert_eq!(problem.refined(start, 0).0, start);
+    }
+
+    #[test]
+    fn what_is_off_by_the_threshold_is_within_it() {
+        let (k, pose) = camera_and_pose();
+        let world = pose.transform(&Point3::new(0.0, 0.0, 2.0));
+        let centre = k * Vector3::new(0.0, 0.0, 1.0);
+        let off = [0.0, 2.9, 3.1].map(|by| Landmark { world, pixel: Point2::new(centre.x + by, centre.y) });
+        let (count, sum) = problem(&off).within(&pose, 3.0);
+        assert!(count == 2 && (sum - 2.9 * 2.9).abs() < 1e-9, "{count} {sum}");
+    }
 }

@@ -204,6 +204,7 @@ fn common_divisor(mut a: usize, mut b: usize) -> usize {
 
 #[cfg(test)]
 mod tests {
+    use super::super::random::Random;
     use super::*;
 
     /// Matches of places that are on no line in either image.
@@ -253,6 +254,125 @@ mod tests {
             let here = (of_pixels * s.second.to_homogeneous()).dot(&s.first.to_homogeneous());
             assert!((there - here).abs() < 1e-9, "{there} {here}");
         }
+    }
+
+    /// Matches of a rectified pair, exact ones.
+    fn rectified<const N: usize>() -> [Correspondence<f64>; N] {
+        core::array::from_fn(|i| {
+            let (u, v) = ((i * 37 % 11) as f64 * 20.0, (i * 53 % 13) as f64 * 15.0);
+            Correspondence::new(u, v, u - 5.0 - (i * 7 % 9) as f64 * 4.0, v)
+        })
+    }
+
+    /// F of a rectified pair whose second image is so many rows lower.
+    fn lower(rows: f64) -> Matrix3<f64> {
+        Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, rows)
+    }
+
+    /// How far a search's best estimate is from those of a rectified pair, in its elements.
+    fn off(search: &Search<'_, f64, MINIMUM>) -> f64 {
+        let f = search.in_pixels(&search.best.expect("an estimate").matrix());
+        (f / f.m32 - lower(0.0)).amax()
+    }
+
+    /// How many random numbers a search with the seed 0 has taken, besides this one.
+    fn taken(search: &mut Search<'_, f64, MINIMUM>) -> usize {
+        let (next, mut random) = (search.sampler.below(1 << 31), Random::new(0));
+        (0..100).find(|_| random.below(1 << 31) == next).expect("one of the first")
+    }
+
+    #[test]
+    fn a_candidate_that_is_nearly_as_good_as_the_best_is_refined() {
+        let seen = rectified::<20>();
+        let mut search = search(&seen);
+        assert!(search.compare(&lower(0.0)));
+        assert!(off(&search) < 1e-9 && search.score.inliers == 20 && (search.score.gain - 20.0).abs() < 1e-9);
+        // As good as can be.
+        search.score.gain = 20.0;
+        // An order for the candidate, and one for what is refined.
+        assert_eq!(taken(&mut search), 2);
+        // Of 20 that gain (1 - r^2 / 2 / 1.5^2)^3 each: 15.6 are more than 0.7 of 20, 12.6 are less.
+        for (rows, orders) in [(0.6, 2), (0.8, 1)] {
+            let before = taken(&mut search);
+            assert!(!search.compare(&lower(rows)));
+            // The number that is looked at is taken, too.
+            assert_eq!(taken(&mut search) - before - 1, orders, "{rows}");
+        }
+        assert!(off(&search) < 1e-9, "the best stays");
+    }
+
+    #[test]
+    fn the_test_of_candidates_learns_the_share_of_the_best() {
+        // Twelve of twenty agree with the best, and one in twenty with a bad one: an outlier is 2.4 times as
+        // likely with a bad one, an inlier 12 times as likely with a good one. Beside an estimate with six
+        // outliers first, of which five are enough to drop it, is one with fewer.
+        let mut seen = rectified::<20>();
+        (0..8).for_each(|i| seen[i].second.y += 20.0 + (i * i) as f64 * 7.0);
+        let mut search = search(&seen);
+        assert!(search.compare(&lower(0.0)));
+        assert_eq!(search.score.inliers, 12);
+        let ratio = 0.95_f64 / 0.4;
+        assert!(ratio.powi(5) < 100.0 && ratio.powi(6) > 100.0);
+        for (outliers, is_dropped) in [(4, false), (6, true)] {
+            let order: [_; 12] =
+                core::array::from_fn(|i| seen[if i < outliers { i } else { i + 8 - outliers }]);
+            let score = search.sprt.score(&lower(0.0), &order, search.loss, 0.0, (0, 1));
+            assert_eq!(score.is_none(), is_dropped, "{outliers}");
+        }
+    }
+
+    #[test]
+    fn an_estimate_is_refined_from_afar_and_kept_if_it_is_better() {
+        let seen = rectified::<20>();
+        let mut search = search(&seen);
+        let turned = lower(1.0) + Matrix3::new(1e-6, -2e-6, 1e-3, 2e-6, 1e-5, 0.01, 1e-3, -0.01, 0.3);
+        assert!(search.improve(&turned));
+        assert!(off(&search) < 1e-6 && search.score.inliers == 20, "{}", off(&search));
+        // What no correspondence is near stays as bad.
+        let best = search.best.expect("an estimate").matrix();
+        assert!(!search.improve(&lower(500.0)) && !search.improve(&Matrix3::zeros()));
+        assert!(search.best.expect("an estimate").matrix() == best && search.score.inliers == 20);
+    }
+
+    #[test]
+    fn an_essential_matrix_stays_one() {
+        // The second image is smaller, which is no motion of the camera: F has two singular values, which E
+        // has not.
+        let seen = rectified::<20>().map(|s| Correspondence { second: s.second * 0.8, ..s });
+        let frames = Frame::of_points(&seen).expect("points that are apart");
+        let f = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.2, 0.0);
+        let values = |kind| {
+            let mut search = Search::<f64, MINIMUM>::new(kind, &seen, frames, &RobustConfig::new(9.0));
+            assert!(search.improve(&f));
+            let best = search.best.expect("an estimate");
+            best.s / best.c
+        };
+        assert_eq!(values(Matrix::Essential), 1.0);
+        assert!((values(Matrix::Fundamental) - 0.8).abs() < 1e-6, "{}", values(Matrix::Fundamental));
+    }
+
+    #[test]
+    fn a_stride_is_the_golden_share_of_a_round() {
+        let golden = (5.0_f64.sqrt() - 1.0) / 2.0;
+        for n in 100..1000 {
+            let share = stride(n) as f64 / n as f64;
+            // A few more, until there is no common divisor.
+            assert!((-0.01..0.1).contains(&(share - golden)), "{n}: {share}");
+        }
+        assert_eq!([1, 2, 3, 8, 9, 1000].map(stride), [1, 1, 1, 5, 5, 619]);
+    }
+
+    #[test]
+    fn an_order_begins_anywhere() {
+        let seen = rectified::<20>();
+        let mut search = search(&seen);
+        let mut starts = [false; 20];
+        for _ in 0..200 {
+            let (start, stride) = search.order();
+            starts[start] = true;
+            assert_eq!(stride, self::stride(20));
+        }
+        assert!(starts.iter().all(|&start| start));
     }
 
     #[test]

@@ -109,3 +109,109 @@ impl AutoExposure {
         ExposureCommand { exposure_us: exposure_us as u32, gain_16ths: gain as u16 }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LIMITS: ExposureLimits = ExposureLimits { least_us: 100, most_us: 10_100, most_gain_16ths: 64 };
+
+    /// A histogram of pixels, so many of each grey level.
+    fn of(levels: &[(u8, usize)]) -> Histogram {
+        let mut histogram = Histogram::new();
+        for &(grey, count) in levels {
+            (0..count).for_each(|_| histogram.line(0, &[grey]));
+        }
+        histogram
+    }
+
+    /// What a fresh controller says of a frame: the light in microseconds at no gain.
+    fn light(left: &[(u8, usize)], right: &[(u8, usize)]) -> Option<u32> {
+        let mut auto = AutoExposure::new(LIMITS);
+        let command = auto.frame([&of(left), &of(right)]);
+        assert_eq!(auto.current(), command.unwrap_or(AutoExposure::new(LIMITS).current()));
+        command.map(|command| command.exposure_us * u32::from(command.gain_16ths) / 16)
+    }
+
+    /// What it says of two frames alike.
+    fn both(levels: &[(u8, usize)]) -> Option<u32> {
+        light(levels, levels)
+    }
+
+    #[test]
+    fn it_begins_in_the_middle() {
+        let command = AutoExposure::new(LIMITS).current();
+        assert_eq!(command, ExposureCommand { exposure_us: 5100, gain_16ths: 16 });
+    }
+
+    #[test]
+    fn light_is_what_brings_the_mean_to_the_target() {
+        // From 5100 us on, by 100 / mean.
+        assert_eq!(both(&[(80, 1)]), Some(5100 * 100 / 80));
+        assert_eq!(both(&[(150, 1)]), Some(5100 * 100 / 150));
+        assert_eq!(both(&[(40, 1), (110, 1)]), Some(5100 * 100 / 75));
+        // A half at least, of what is bright without being saturated.
+        assert_eq!(both(&[(252, 1)]), Some(2550));
+    }
+
+    #[test]
+    fn near_the_target_nothing_changes() {
+        for (sum, changes) in
+            [(87 * 16 + 15, true), (88 * 16, false), (112 * 16, false), (112 * 16 + 1, true)]
+        {
+            // Sixteen pixels with that sum.
+            let (each, more) = ((sum / 16) as u8, sum % 16);
+            assert_eq!(both(&[(each, 16 - more), (each + 1, more)]).is_some(), changes, "{sum}");
+        }
+        assert_eq!(both(&[]), None);
+    }
+
+    #[test]
+    fn the_brighter_camera_counts() {
+        for (left, right) in [(60, 125), (125, 60)] {
+            assert_eq!(light(&[(left, 1)], &[(right, 1)]), Some(5100 * 100 / 125));
+        }
+        // Of an empty frame nothing is known.
+        assert_eq!(light(&[(125, 1)], &[]), Some(5100 * 100 / 125));
+    }
+
+    #[test]
+    fn more_than_a_tenth_saturated_takes_a_quarter_to_a_half() {
+        // The mean is on the target: 253 or more are saturated.
+        let saturated = |count: usize| [(83, 1000 - count), (253, count)];
+        assert_eq!([both(&saturated(100)), both(&saturated(101))], [None, Some(5100 * 3 / 4)]);
+        // Either camera's count.
+        assert_eq!(light(&saturated(101), &[(100, 1)]), Some(5100 * 3 / 4));
+        assert_eq!(light(&[(100, 1)], &saturated(101)), Some(5100 * 3 / 4));
+        // A brighter picture loses what brings it to the target, down to a half.
+        assert_eq!(both(&[(120, 800), (255, 200)]), Some(5100 * 100 / 147));
+        assert_eq!(both(&[(255, 1)]), Some(2550));
+    }
+
+    #[test]
+    fn two_frames_pass_before_a_change_shows() {
+        let mut auto = AutoExposure::new(LIMITS);
+        let dark = of(&[(80, 1)]);
+        let changes = [(); 7].map(|()| auto.frame([&dark, &dark]).is_some());
+        assert_eq!(changes, [true, false, false, true, false, false, true]);
+    }
+
+    #[test]
+    fn the_exposure_is_raised_before_the_gain() {
+        let mut auto = AutoExposure::new(LIMITS);
+        let (dark, bright) = (of(&[(50, 1)]), of(&[(200, 1)]));
+        let mut run = |histogram: &Histogram| {
+            let command = (0..3).find_map(|_| auto.frame([histogram, histogram]));
+            command.map(|command| (command.exposure_us, command.gain_16ths))
+        };
+        // Twice as much each time, to the limits of both.
+        let raised = [(); 4].map(|()| run(&dark));
+        assert_eq!(raised, [Some((10_100, 16)), Some((10_100, 32)), Some((10_100, 64)), None]);
+        let lowered = [(); 10].map(|()| run(&bright));
+        let exposures = [10_100, 10_100, 5050, 2525, 1262, 631, 315, 157, 100];
+        let gains = [32, 16, 16, 16, 16, 16, 16, 16, 16];
+        for (at, found) in lowered.into_iter().enumerate() {
+            assert_eq!(found, exposures.get(at).map(|&exposure_us| (exposure_us, gains[at])), "{at}");
+        }
+    }
+}

@@ -231,4 +231,30 @@ mod tests {
             assert_eq!(picture.sample_parallelogram::<5>(start, along, across, &mut [0.0; 25]), None);
         }
     }
+
+    #[test]
+    fn steps_of_64_px_are_too_long() {
+        let pixels: [u8; 6400] = core::array::from_fn(|i| (i % 80) as u8);
+        let picture = Picture::new(&pixels, 80, 80).expect("as many pixels");
+        for axis in 0..4 {
+            let sample = |step: f32| {
+                let mut steps = [1.0, 0.0, 0.0, 1.0];
+                steps[axis] = step;
+                let [a, c, b, d] = steps;
+                picture.sample_parallelogram::<2>([2.0, 3.0], [a, c], [b, d], &mut [0.0; 4])
+            };
+            assert_eq!(
+                [63.5, 64.0, f32::NAN, f32::INFINITY].map(|step| sample(step).is_some()),
+                [true, false, false, false],
+                "{axis}"
+            );
+        }
+        let from =
+            |start: [f32; 2]| picture.sample_parallelogram::<2>(start, [1.0, 0.0], [0.0, 1.0], &mut [0.0; 4]);
+        assert!(from([0.0, 77.9]).is_some() && from([77.9, 0.0]).is_some());
+        for start in [[f32::NAN, 3.0], [3.0, f32::NAN], [65536.0, 3.0], [3.0, 1e9], [78.0, 3.0], [3.0, 78.0]]
+        {
+            assert!(from(start).is_none(), "{start:?}");
+        }
+    }
 }

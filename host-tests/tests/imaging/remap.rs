@@ -86,6 +86,17 @@ fn farthest(table: &Table, warp: &Warp<f64>) -> f64 {
     most
 }
 
+/// The raw rows that must be held at once, of those that each row needs: from the first one of a row to the
+/// last one that was needed before or is needed now.
+fn rows_held(table: &Table) -> u16 {
+    let (mut last_so_far, mut most) = (0, 0);
+    for (first, last) in (0..table.size().height).filter_map(|row| table.raw_rows(row)) {
+        last_so_far = last.max(last_so_far);
+        most = most.max(last_so_far - first + 1);
+    }
+    most
+}
+
 pub const QVGA: ImageSize = ImageSize { width: 320, height: 240 };
 
 #[test]
@@ -121,6 +132,13 @@ fn too_small_a_band_is_refused_with_what_would_do() {
     let needed = RemapTable::<0>::slots(QVGA, 6);
     assert_eq!(RemapTable::<8>::new(warp).map(|_| ()), Err(RemapTableError::Slots { needed }));
     assert!(matches!(needed, 140..400), "{needed}");
+    // What was there before is gone with the warp that was refused.
+    let flat = rectified(ImageSize { width: 8, height: 8 }, [one; 2], [0.0; 3], Crop::Natural);
+    let mut small = RemapTable::<20>::new(&flat.warps()[0]).expect("a few slots");
+    assert!(small.rows() > 0 && small.raw_rows(0).is_some());
+    assert_eq!(small.set(warp), Err(RemapTableError::Slots { needed }));
+    let none = ImageSize { width: 0, height: 0 };
+    assert_eq!((small.size(), small.raw_size(), small.rows()), (none, none, 0));
     let mut remap = Remap::<320, 90, SLOTS>::new(table).expect("enough");
     let (mut line, mut valid) = ([0; 320], [0; 320]);
     let early = remap.row(&mut line, &mut valid);
@@ -154,6 +172,7 @@ fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
         let both = rectified(QVGA, cameras, turn, crop);
         for warp in both.warps() {
             let table = Table::new(warp).expect("a table");
+            assert_eq!(table.rows(), rows_held(&table));
             let far = farthest(&table, warp);
             assert!(far <= 0.05, "{crop:?}: {far} px with cells of {} px", 1 << table.shift());
             let raw = noise(QVGA, 7);
@@ -195,6 +214,7 @@ proptest! {
                 Err(RemapTableError::TooBent) => continue,
                 Err(error) => panic!("{error}"),
             };
+            prop_assert_eq!(table.rows(), rows_held(&table));
             prop_assert!(farthest(&table, warp) <= 0.05, "{}", farthest(&table, warp));
             let raw = noise(size, seed);
             prop_assert_eq!(whole::<150, 121>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));

@@ -6,7 +6,9 @@ use stereopsis::camera::{
     CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, StereoSource,
 };
 use stereopsis::geometry::{camera::ImageSize, rectify::Crop};
-use stereopsis::imaging::{RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapTable};
+use stereopsis::imaging::{
+    RectifiedPair, RectifiedPairError, Remap, RemapError, RemapPair, RemapPairError, RemapTable,
+};
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_host::mock::MockCamera;
@@ -24,7 +26,7 @@ fn a_pair_is_taken_in_step() {
     let tables = both.warps().map(|warp| Table::new(&warp).expect("a table"));
     let source = || {
         let [left, right] = raw.clone().map(|raw| MockCamera::from_image(raw.into()).expect("an image"));
-        CameraPair::new(left, right, 0).expect("of one size")
+        CameraPair::new(left, right, 7).expect("of one size")
     };
     let remaps = || tables.clone().map(|table| Remap::<320, 40, SLOTS>::new(table).expect("enough rows"));
     // Set where they stand, they are what they are when they are made.
@@ -34,6 +36,7 @@ fn a_pair_is_taken_in_step() {
     let mut made = Box::new(RemapPair::new(left, right));
     assert_eq!(format!("{set:?}"), format!("{made:?}"));
     let mut pair = RectifiedPair::new(source(), &mut set).expect("enough rows for both");
+    assert_eq!((pair.max_row_skew_us(), pair.format()), (7, source().format()), "as the cameras say");
     let expected = [twin::remap(&tables[0], &raw[0]), twin::remap(&tables[1], &raw[1])];
     for frame in 0..2 {
         assert_eq!(pair.start_frame().expect("a frame").sequence, frame);
@@ -49,6 +52,9 @@ fn a_pair_is_taken_in_step() {
                 tables[camera].mask(row, &mut mask);
                 assert_eq!(mask[..], expected[camera].1[here.clone()]);
             }
+            let mut masks = [[9; 320]; 2];
+            assert!(pair.mask(row, masks.each_mut().map(|mask| &mut mask[..])));
+            assert_eq!(masks, [0, 1].map(|camera: usize| expected[camera].1[here.clone()]));
         }
     }
     // What it says that it takes is enough, and one line fewer is refused.
@@ -79,7 +85,13 @@ fn a_pair_is_taken_in_step() {
     let format = small.format();
     let small = CameraPair::new(small.clone(), small, 0).expect("of one size");
     let refused = RectifiedPair::new(small, &mut made).map(|_| ());
-    assert_eq!(refused, Err(RectifiedPairError::Raw(format)));
+    let refused = refused.expect_err("of another size");
+    assert_eq!(refused, RectifiedPairError::Raw(format));
+    assert!(refused.to_string().starts_with("raw frames of 64x240 px are not those of the remap"));
+    let of_remap = RectifiedPairError::<CameraError<()>>::Remap(RemapError::Lines { needed: 9 });
+    assert_eq!(of_remap.to_string(), RemapError::Lines { needed: 9 }.to_string());
+    assert_eq!(RemapPairError::Lines { needed: 9 }.to_string(), of_remap.to_string());
+    assert!(RemapPairError::Sizes.to_string().contains("different sizes"));
 }
 
 /// Raw lines through remap, census and matching in one loop: what rectified pictures give, without the

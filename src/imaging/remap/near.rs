@@ -77,3 +77,21 @@ fn is_in(raw: ImageSize, (column, row): (i32, i32)) -> bool {
     let end = |side: u16| ((u32::from(side) - 1) << BITS) + 2 * HALF as u32;
     column.cast_unsigned() < end(raw.width) && row.cast_unsigned() < end(raw.height)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_is_inside_to_the_last_pixel() {
+        let raw = ImageSize { width: 5, height: 3 };
+        let (right, bottom) = (4 << BITS, 2 << BITS);
+        // Half a 256th is added to all of them, and half a 256th more is still the last pixel.
+        for (place, is_inside) in [(-1, false), (0, true), (HALF, true), (2 * HALF - 1, true)] {
+            let at_end = |end: i32| if is_inside { end + place } else { place };
+            assert_eq!(is_in(raw, (at_end(right), 9)), is_inside, "{place}");
+            assert_eq!(is_in(raw, (9, at_end(bottom))), is_inside, "{place}");
+        }
+        assert!(!is_in(raw, (right + 2 * HALF, 9)) && !is_in(raw, (9, bottom + 2 * HALF)));
+    }
+}

@@ -216,4 +216,30 @@ mod tests {
         assert_eq!(band.four(0, 2 << BITS), [0x605, 0x201]);
         assert_eq!(band.four(0, 4 << BITS), [0x403, 0x605]);
     }
+
+    #[test]
+    fn a_place_is_split_before_the_last_pixel() {
+        // A quarter behind the third pixel, and 255/256 behind it.
+        assert_eq!(split((3 << BITS) + (1 << 14), 9), (3, 64));
+        assert_eq!(split((4 << BITS) - 1, 9), (3, 255));
+        // The last of five pixels is all of the way from the one before it.
+        assert_eq!(split(4 << BITS, 5), (3, 256));
+        assert_eq!(split(0, 1), (0, 0));
+    }
+
+    #[test]
+    fn the_last_pixel_of_the_image_is_itself() {
+        // Three rows and the copy of the first; the second is the image's last, of two pixels.
+        let lines = [[1, 2], [3, 4], [5, 6], [1, 2]];
+        let band = Band::new(&lines, 0, ImageSize { width: 2, height: 2 }, 2);
+        let one = 1 << BITS;
+        assert_eq!(
+            [(0, 0), (one, 0), (0, one), (one, one)].map(|(x, y)| band.near_the_last(x, y)),
+            [1, 2, 3, 4]
+        );
+        assert_eq!(band.near_the_last(one / 2, one), 4, "3.5, rounded");
+        // With row 6 in the first line.
+        let band = Band::new(&lines, 6, ImageSize { width: 2, height: 8 }, 2);
+        assert_eq!([6, 7].map(|row| band.near_the_last(one, row << BITS)), [2, 4]);
+    }
 }

@@ -136,4 +136,41 @@ mod tests {
         assert_eq!(weights(8, 4), [-65536, 9 * 65536, 9 * 65536, -65536]);
         assert_eq!(weights(0, 5), [0, 1 << 20, 0, 0]);
     }
+
+    #[test]
+    fn a_segment_is_inside_with_the_pixels_to_the_right_and_below() {
+        let raw = ImageSize { width: 40, height: 30 };
+        // All nodes at one place: each segment is a point, with a margin of one around it.
+        let part = |column: i32, row: i32| {
+            let nodes = [[column & !1, row]; 4];
+            let lattice = Lattice { rows: [&nodes; 4], shift: 3, piece: 2, cells: 1, raw };
+            Segments::new(&lattice, 0, false).step().expect("a cell").part
+        };
+        let (right, bottom) = (39 << BITS, 29 << BITS);
+        let middle = 9 << BITS;
+        // Half a 256th is added. From 0 on, and before the last column.
+        for (column, expected) in [
+            (2 - HALF, Part::All),
+            (-HALF, Part::Some),
+            (right - HALF - 2, Part::All),
+            (right - HALF, Part::Some),
+            (right + HALF - 2, Part::Some),
+            (right + HALF + 2, Part::None),
+            (-HALF - 2, Part::None),
+        ] {
+            assert_eq!(part(column, middle), expected, "{column}");
+        }
+        for (row, expected) in [
+            (1 - HALF, Part::All),
+            (-HALF, Part::Some),
+            (bottom - HALF - 2, Part::All),
+            (bottom - HALF - 1, Part::Some),
+            (bottom + HALF, Part::Some),
+            (bottom + HALF + 1, Part::None),
+            (-HALF - 1, Part::Some),
+            (-HALF - 2, Part::None),
+        ] {
+            assert_eq!(part(middle, row), expected, "{row}");
+        }
+    }
 }

@@ -5,7 +5,7 @@ use nalgebra::{Point3, Rotation3, Vector3};
 use stereopsis::geometry::{
     camera::{Camera, Pose},
     robust::{RobustConfig, RobustError, RobustEssential, robust_essential, robust_fundamental},
-    two_view::{Correspondence, Essential},
+    two_view::{Correspondence, Essential, Fundamental},
 };
 use stereopsis_host::scene::Random;
 
@@ -106,6 +106,23 @@ fn in_f32_as_in_f64() {
     let (a, b) = (single.essential.matrix().cast::<f64>(), wide.essential.matrix());
     assert!((a - b).amax().min((a + b).amax()) < 1e-3, "{a} {b}");
     assert!(single.inliers.abs_diff(wide.inliers) <= 1);
+}
+
+#[test]
+fn what_is_said_of_an_estimate_is_so() {
+    let views = far_apart(5, 30.0, 80, 1.0);
+    let (seen, _): (Vec<_>, Vec<_>) = mixed(&views.seen, 0.4, 0.3, 5).into_iter().unzip();
+    let (found, inliers) = solve(&seen, &views.camera, 1).expect("an estimate");
+    let f = Fundamental::from_essential(&found.essential, &views.camera, &views.camera);
+    let mut squares = 0.0;
+    for (s, &inlier) in seen.iter().zip(&inliers) {
+        let squared = f.sampson_squared_px2(s);
+        assert_eq!(inlier, squared <= THRESHOLD * THRESHOLD);
+        squares += if inlier { squared } else { 0.0 };
+    }
+    assert_eq!(found.inliers, inliers.iter().filter(|&&inlier| inlier).count());
+    assert!((found.rms_px - (squares / found.inliers as f64).sqrt()).abs() < 1e-9, "{}", found.rms_px);
+    assert!(found.miss_probability <= 1e-3 && (16..200).contains(&found.samples), "{found:?}");
 }
 
 #[test]

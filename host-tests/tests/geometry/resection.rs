@@ -112,6 +112,15 @@ fn wrong_points_do_no_harm() {
         assert!(kept >= 99 * (200 - wrong) / 100, "{kept} of {}", 200 - wrong);
         assert!(inliers[..wrong].iter().filter(|&&i| i).count() <= wrong / 20);
         assert!((found.rms_px - 0.5).abs() < 0.1, "{}", found.rms_px);
+        let distance = |l: &Landmark<f64>| {
+            let there = camera().project(&found.pose.inverse_transform(&l.world)).expect("in front");
+            (there - l.pixel).norm()
+        };
+        assert!(landmarks.iter().zip(&inliers).all(|(l, &inlier)| inlier == (distance(l) <= 2.0)));
+        let squares = landmarks.iter().map(distance).filter(|&d| d <= 2.0).map(|d| d * d).sum::<f64>();
+        // Two coordinates of each, less the six numbers of the pose.
+        let free = 2.0 * found.inliers as f64 - 6.0;
+        assert!((found.rms_px - (squares / free).sqrt()).abs() < 1e-9, "{}", found.rms_px);
         // The same seed, the same estimate.
         assert_eq!(robust_resection(&landmarks, &camera(), &config, &mut inliers), Ok(found));
     }

@@ -62,6 +62,9 @@ proptest! {
         for (s, &inlier) in mixed.seen.iter().zip(&inliers) {
             prop_assert_eq!(inlier, found.fundamental.sampson_px(s).abs() <= THRESHOLD);
         }
+        let squares = mixed.seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier)
+            .map(|(s, _)| found.fundamental.sampson_squared_px2(s)).sum::<f64>();
+        prop_assert!((found.rms_px - (squares / found.inliers as f64).sqrt()).abs() < 1e-9);
         let kept = mixed.right.iter().zip(&inliers).filter(|&(&right, &inlier)| right && inlier).count();
         // Nearly all: the threshold is five deviations of the noise.
         prop_assert!(kept >= 114, "{kept} of 120");

@@ -181,3 +181,47 @@ pub(super) fn check<'a, T: Real>(
     }
     Ok(inliers)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::Matrix3;
+
+    #[test]
+    fn what_no_search_can_be_made_of_is_refused() {
+        let seen: [_; 9] = core::array::from_fn(|i| Correspondence::new(i as f64, 1.0, 2.0, 3.0));
+        let checked = |n: usize, config: RobustConfig<f64>, room: usize| {
+            check(&seen[..n], &config, &mut [false; 12][..room]).map(|inliers| inliers.len())
+        };
+        let config = RobustConfig::new(1.0);
+        assert_eq!([7, 8, 9].map(|n| checked(n, config, n)), [Err(RobustError::TooFew), Ok(8), Ok(9)]);
+        assert_eq!(
+            [8, 9, 12].map(|room| checked(9, config, room)),
+            [Err(RobustError::Inliers(9)), Ok(9), Ok(9)]
+        );
+        for (threshold_px, is_one) in [(0.0, false), (1e-300, true), (f64::MAX, true), (f64::INFINITY, false)]
+        {
+            assert_eq!(checked(9, RobustConfig::new(threshold_px), 9).is_ok(), is_one, "{threshold_px}");
+        }
+        for (miss_probability, is_one) in [(0.0, false), (1e-9, true), (0.999, true), (1.0, false)] {
+            let config = RobustConfig { miss_probability, ..config };
+            assert_eq!(checked(9, config, 9).is_ok(), is_one, "{miss_probability}");
+        }
+        assert_eq!(checked(9, RobustConfig { most_samples: 0, ..config }, 9), Err(RobustError::NoSamples));
+        assert_eq!(checked(9, RobustConfig { most_samples: 1, ..config }, 9), Ok(9));
+    }
+
+    #[test]
+    fn inliers_are_counted_and_their_squares_summed() {
+        let rectified = Matrix3::new(0.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, 1.0, 0.0);
+        let f = Fundamental::from_matrix(&rectified).expect("rank 2");
+        // Sampson's distance is the difference of the rows over the root of two.
+        let rows = [0.0, 1.0, -2.0, 4.2, 4.3, -30.0, 4.0];
+        let seen = rows.map(|rows| Correspondence::new(5.0 * rows, 50.0, 30.0, 50.0 + rows));
+        let mut inliers = [true; 7];
+        let (count, sum) = mark_inliers(&f, &seen, &RobustConfig::new(3.0), &mut inliers);
+        assert_eq!((count, inliers), (5, [true, true, true, true, false, false, true]));
+        let expected: f64 = [1.0, 4.0, 4.2 * 4.2, 16.0].iter().map(|squared| squared / 2.0).sum();
+        assert!((sum - expected).abs() < 1e-9, "{sum} {expected}");
+    }
+}

@@ -211,6 +211,48 @@ impl<T: Real> Estimator<MINIMUM> for Search<'_, T> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use nalgebra::Point2;
+
+    #[test]
+    fn what_no_pose_can_come_of_is_refused() {
+        let landmarks: [_; 5] = core::array::from_fn(|i| Landmark {
+            world: Point3::new(i as f64, 1.0, 2.0),
+            pixel: Point2::new(3.0, i as f64),
+        });
+        let checked =
+            |n: usize, config: RobustConfig<f64>, room: usize| check(&landmarks[..n], &config, room);
+        let config = RobustConfig::new(1.0);
+        assert_eq!([3, 4].map(|n| checked(n, config, n)), [Err(RobustResectionError::TooFew), Ok(())]);
+        let refused = Err(RobustResectionError::Inliers(5));
+        assert_eq!([4, 5, 6].map(|room| checked(5, config, room)), [refused, Ok(()), Ok(())]);
+        for (threshold_px, is_one) in [(-1.0, false), (0.0, false), (1e-300, true), (f64::NAN, false)] {
+            assert_eq!(checked(5, RobustConfig::new(threshold_px), 5).is_ok(), is_one, "{threshold_px}");
+        }
+        for (miss_probability, is_one) in [(0.0, false), (1e-9, true), (0.999, true), (1.0, false)] {
+            let config = RobustConfig { miss_probability, ..config };
+            assert_eq!(checked(5, config, 5).is_ok(), is_one, "{miss_probability}");
+        }
+        for (most_samples, is_one) in [(0, false), (1, true), (2, true)] {
+            assert_eq!(checked(5, RobustConfig { most_samples, ..config }, 5).is_ok(), is_one);
+        }
+    }
+
+    #[test]
+    fn four_landmarks_have_a_pose_and_three_of_them_none() {
+        let camera = Camera::new(500.0, 510.0, 320.0, 240.0).expect("a camera");
+        let at = [(0.3, 0.2, 2.0), (-0.4, 0.1, 3.0), (0.1, -0.5, 2.5), (-0.2, -0.3, 4.0)];
+        let mut landmarks = at.map(|(x, y, z)| {
+            let world = Point3::new(x, y, z);
+            Landmark { world, pixel: camera.project(&world).expect("in front") }
+        });
+        let solve = |landmarks: &[Landmark<f64>]| {
+            robust_resection(landmarks, &camera, &RobustConfig::new(1.0), &mut [false; 4])
+        };
+        let found = solve(&landmarks).expect("a pose");
+        assert!(found.inliers == 4 && found.pose.translation().norm() < 1e-6 && found.rms_px < 1e-6);
+        landmarks[2].pixel.x += 90.0;
+        assert_eq!(solve(&landmarks), Err(RobustResectionError::NoAgreement));
+    }
 
     #[test]
     fn as_many_samples_as_the_share_of_right_ones_asks_for() {

@@ -196,4 +196,73 @@ mod tests {
         assert_eq!(line, [0, 2, 200, 254, 255, 255]);
         assert_eq!(Balance::between(&left, &left), Balance::NONE);
     }
+
+    /// A histogram of so many pixels of each of some grey levels.
+    fn of(levels: &[(u8, usize)]) -> Histogram {
+        let mut histogram = Histogram::new();
+        for &(grey, count) in levels {
+            (0..count).for_each(|_| histogram.line(0, &[grey]));
+        }
+        histogram
+    }
+
+    /// Pixels spread evenly over bins from one on.
+    fn bins(first: u8, count: u8) -> Histogram {
+        let mut histogram = Histogram::new();
+        (first..first + count).for_each(|bin| histogram.line(0, &[16 * bin]));
+        histogram
+    }
+
+    #[test]
+    fn a_difference_of_sixteen_levels_is_balanced() {
+        // Alike but for a bin, which is 16 levels, or for half of one.
+        let balance = Balance::between(&bins(4, 4), &bins(3, 4));
+        assert_eq!(balance, Balance { gain_256ths: 256, offset_256ths: 16 * 256 });
+        let balance = Balance::between(&bins(3, 4), &bins(4, 4));
+        assert_eq!(balance, Balance { gain_256ths: 256, offset_256ths: -16 * 256 });
+        assert_eq!(Balance::between(&bins(3, 5), &bins(3, 4)), Balance::NONE);
+    }
+
+    #[test]
+    fn the_gain_is_that_of_the_spreads() {
+        // Twelve bins beside six: twice the spread, from 32 to 224 and from 80 to 176.
+        let (wide, narrow) = (bins(2, 12), bins(5, 6));
+        let balance = Balance::between(&wide, &narrow);
+        assert_eq!(balance.gain_256ths, 512);
+        let near = |offset_256ths: i32, level: i32| (offset_256ths - 256 * level).abs() <= 256;
+        assert!(near(balance.offset_256ths, 128 - 2 * 128), "{balance:?}");
+        let balance = Balance::between(&narrow, &wide);
+        assert_eq!(balance.gain_256ths, 128);
+        assert!(near(balance.offset_256ths, 128 - 64), "{balance:?}");
+        // No more than twice, nor less than half.
+        assert_eq!(Balance::between(&bins(2, 12), &bins(3, 4)).gain_256ths, 512);
+        assert_eq!(Balance::between(&bins(3, 4), &bins(2, 12)).gain_256ths, 128);
+    }
+
+    #[test]
+    fn with_hardly_any_contrast_the_means_count_alone() {
+        // Within one bin quantiles are 3.7 levels from their mean: half the spread of two bins.
+        assert_eq!(Balance::between(&bins(9, 2), &bins(5, 1)).gain_256ths, 512);
+        // Those from 8 to 16 are 2 levels from theirs, which is less than 3.
+        let (wide, dark) = (bins(2, 12), bins(0, 1));
+        for (left, right) in [(&wide, &dark), (&dark, &wide)] {
+            let balance = Balance::between(left, right);
+            assert!(balance.gain_256ths == 256 && balance.offset_256ths.abs() > 256 * 100, "{balance:?}");
+        }
+    }
+
+    #[test]
+    fn levels_near_black_and_white_do_not_count() {
+        let levels = |histogram: &Histogram| inside(histogram, histogram).count();
+        // Quantiles are one level apart in a bin, and those from 8 to 248 are inside.
+        assert_eq!([0, 100, 250].map(|grey| levels(&of(&[(grey, 16)]))), [8, 15, 8]);
+        // Both cameras' have to be, and three are needed.
+        let white = of(&[(250, 32)]);
+        for (dark, count) in [(0, 1), (4, 2), (8, 3)] {
+            let black = of(&[(0, 32 - dark), (20, dark)]);
+            assert_eq!(inside(&black, &white).count(), count);
+            assert_eq!(Balance::between(&black, &white) == Balance::NONE, count < 3, "{count}");
+        }
+        assert_eq!(Balance::between(&of(&[]), &white), Balance::NONE);
+    }
 }

@@ -88,4 +88,19 @@ mod tests {
         assert_eq!((histogram.count(), histogram.bins()), (16, &[1; 16]));
         assert_eq!((histogram.black_per_mille(), histogram.saturated_per_mille()), (62, 62));
     }
+
+    #[test]
+    fn black_is_up_to_2_and_saturated_from_253_on() {
+        let of = |levels: &[u8]| {
+            let mut histogram = Histogram::new();
+            levels.iter().for_each(|&grey| histogram.line(0, &[grey]));
+            histogram
+        };
+        let four = of(&[2, 3, 252, 253]);
+        assert_eq!((four.black_per_mille(), four.saturated_per_mille()), (250, 250));
+        assert_eq!((four.count(), four.mean_16ths()), (4, (2 + 3 + 252 + 253) * 16 / 4));
+        let mut again = of(&[7]);
+        again.begin();
+        assert_eq!((again, again.mean_16ths(), again.black_per_mille()), (Histogram::new(), 0, 0));
+    }
 }

@@ -156,3 +156,85 @@ impl Default for NoiseMeter {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A meter with so many sums in some bins.
+    fn of(bins: &[(usize, u32)]) -> NoiseMeter {
+        let mut meter = NoiseMeter::new();
+        for &(bin, count) in bins {
+            meter.counts[bin] += count;
+            meter.sums += count;
+        }
+        meter
+    }
+
+    #[test]
+    fn a_quantile_lies_evenly_in_its_bin() {
+        // Of four sums of 80 to 96 the first is taken for 82, the last one for 94: twice that, over 91.
+        let meter = of(&[(5, 4)]);
+        assert_eq!([4, 2, 1].map(|share| meter.deviation(share)), [164, 172, 188].map(|s| Some(s * 16 / 91)));
+        // Of two sums of 80 to 96 and two of 112 to 128 the fourth is the second one there.
+        let meter = of(&[(5, 2), (7, 2)]);
+        assert_eq!([4, 2, 1].map(|share| meter.deviation(share)), [168, 184, 248].map(|s| Some(s * 16 / 91)));
+        assert_eq!(of(&[(63, 9)]).sigma_16ths(), Some((2 * 63 * 16 + 1) * 16 / 91));
+        // The 1/128 quantile: of 129 sums the second, of 128 the first.
+        assert_eq!([128, 129].map(|n| of(&[(1, 1), (9, n - 1)]).sigma_16ths()), [Some(8), Some(50)]);
+        assert_eq!(NoiseMeter::new().sigma_16ths(), None);
+    }
+
+    #[test]
+    fn levels_begin_at_their_deviations() {
+        // Below 30, from there on, below 48 and from there on.
+        for (bins, sigma, level) in [
+            (&[(5, 3)][..], 29, Noise::None),
+            (&[(5, 1)], 30, Noise::Low),
+            (&[(8, 16), (9, 900)], 47, Noise::Low),
+            (&[(8, 16), (9, 1010)], 48, Noise::High),
+        ] {
+            let meter = of(bins);
+            assert_eq!((meter.sigma_16ths(), meter.level()), (Some(sigma), level));
+        }
+        // Where the lower quartile is more than three times as large, it is texture.
+        for (bins, quarter, level) in [
+            (&[(5, 1), (15, 127)][..], 85, Noise::Low),
+            (&[(5, 1), (10, 30), (16, 97)], 90, Noise::Low),
+            (&[(5, 1), (16, 127)], 91, Noise::None),
+        ] {
+            let meter = of(bins);
+            assert_eq!((meter.sigma_16ths(), meter.deviation(4)), (Some(30), Some(quarter)));
+            assert_eq!(meter.level(), level, "{quarter}");
+        }
+        assert_eq!(NoiseMeter::new().level(), Noise::None);
+    }
+
+    #[test]
+    fn a_sum_is_of_sixteen_masked_columns() {
+        // By turns 100 and 101: the mask gives 200 - 808 + 600 or 202 - 800 + 606, eight of either sign.
+        let line: [u8; 52] = core::array::from_fn(|x| 100 + (x % 2) as u8);
+        let count = |width: usize| {
+            let mut meter = NoiseMeter::new();
+            meter.line(&line[..width]);
+            (meter.sums, meter.counts[8])
+        };
+        let widths = [0, 4, 19, 20, 35, 36, 51, 52].map(count);
+        assert_eq!(widths, [0, 0, 0, 1, 1, 2, 2, 3].map(|runs| (runs, runs)));
+        // A black or a white pixel takes the runs that it is read by.
+        for (place, left) in [(0, 2), (15, 2), (16, 1), (19, 1), (20, 2), (32, 1), (36, 2), (51, 2)] {
+            for grey in [0, 255] {
+                let (mut meter, mut line) = (NoiseMeter::new(), line);
+                line[place] = grey;
+                meter.line(&line);
+                assert_eq!((meter.sums, meter.counts[8]), (left, left), "{place}");
+            }
+        }
+        // What is beyond the last bin counts in it.
+        let mut meter = NoiseMeter::new();
+        meter.line(&core::array::from_fn::<_, 20, _>(|x| if x % 2 == 0 { 1 } else { 254 }));
+        assert_eq!((meter.sums, meter.counts[63]), (1, 1));
+        meter.clear();
+        assert_eq!((meter.sums, meter.counts), (0, [0; 64]));
+    }
+}

@@ -90,3 +90,50 @@ impl<const W: usize> Default for LineWindow<W> {
         Self::new()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The first pixels of the rows around a centre.
+    fn around(window: &LineWindow<8>, centre: usize) -> [u8; 5] {
+        window.around(centre).map(|row| row[0])
+    }
+
+    #[test]
+    fn the_last_five_lines_are_there() {
+        let mut window = LineWindow::<8>::new();
+        window.begin(6);
+        for row in 0..9 {
+            window.next_line().fill(row);
+            window.accept();
+        }
+        assert_eq!(window.count(), 9);
+        assert_eq!(around(&window, 6), [4, 5, 6, 7, 8]);
+        // Below the newest line it repeats.
+        assert_eq!([around(&window, 7), around(&window, 8)], [[5, 6, 7, 8, 8], [6, 7, 8, 8, 8]]);
+        assert!(window.around(6).iter().all(|row| row.len() == 6));
+        // No more than the capacity, and from the first line on again.
+        window.begin(99);
+        assert_eq!((window.count(), window.next_line().len()), (0, 8));
+    }
+
+    #[test]
+    fn a_lost_line_is_like_the_one_above() {
+        let mut window = LineWindow::<8>::new();
+        window.begin(8);
+        window.next_line().fill(9);
+        // Above the first line there is none.
+        window.repeat();
+        assert_eq!(window.next_line(), [0; 8]);
+        window.accept();
+        for row in 1..7 {
+            window.next_line().fill(10 * row);
+            window.accept();
+            window.repeat();
+            assert_eq!(window.next_line(), [10 * row; 8]);
+        }
+        window.accept();
+        assert_eq!(around(&window, 5), [30, 40, 50, 60, 60]);
+    }
+}

@@ -106,4 +106,19 @@ mod tests {
         let e = f.essential().moved(&[0.3, -0.2, 0.1, 0.5, 0.1, 0.0, 0.0]);
         assert_eq!(e.c, e.s);
     }
+
+    #[test]
+    fn a_matrix_of_rank_one_has_no_factors() {
+        let diagonal = |c: f64, s: f64| Factored::new(&Matrix3::from_diagonal(&Vector3::new(c, s, 0.0)));
+        let found = diagonal(3.0, -4.0).expect("of rank two");
+        assert!((found.c - 0.8).abs() < 1e-15 && (found.s - 0.6).abs() < 1e-15);
+        // Sixteen units in the last place are rounding.
+        let shares = [0.0, 4.0, 15.0, 17.0, 64.0, 1e9];
+        let are_factors = shares.map(|units| diagonal(5.0, 5.0 * units * f64::EPSILON).is_some());
+        assert_eq!(are_factors, [false, false, false, true, true, true]);
+        for number in [f64::NAN, f64::INFINITY, 1e200] {
+            assert!(diagonal(number, 1.0).is_none(), "{number}");
+        }
+        assert!(diagonal(0.0, 0.0).is_none());
+    }
 }

@@ -130,5 +130,14 @@ mod tests {
         assert!(Frame::of_points(&seen(1e-16, 1.0)).is_none());
         assert!(Frame::of_points(&seen(1.0, 1e-16)).is_none());
         assert!(Frame::of_points(&seen(1e200, 1.0)).is_none(), "the sums overflow");
+        // Four units in the last place of a number like 1024 are rounding, five are not.
+        let units = |count: f64| {
+            let by = count * f64::EPSILON * 1024.0;
+            let seen = [-by, by].map(|by| Correspondence::new(7.0, 1024.0 + by, 1024.0 + by, 3.0));
+            let apart = [-1.0, 1.0].map(|by| Correspondence::new(7.0 + by, 5.0, 5.0, 3.0 + by));
+            let mixed = |k: usize| Correspondence { first: seen[k].first, second: apart[k].second };
+            [Frame::of_points(&seen).is_some(), Frame::of_points(&[mixed(0), mixed(1)]).is_some()]
+        };
+        assert_eq!([2.0, 4.0, 5.0, 9.0].map(units), [[false; 2], [false; 2], [true; 2], [true; 2]]);
     }
 }

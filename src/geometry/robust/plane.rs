@@ -179,6 +179,19 @@ mod tests {
     }
 
     #[test]
+    fn what_is_off_by_the_limit_is_not_on_the_plane() {
+        // Cameras side by side and a plane far away, which both show at the same places.
+        let at = |x: f64, y: f64| Correspondence::new(x, y, x, y);
+        let three = [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)];
+        let plane = Plane::through(&skew(&Vector3::x()), three).expect("an epipole");
+        for (x, y) in [(2.0, 0.0), (0.0, -2.0)] {
+            let s = Correspondence::new(5.0 + x, 3.0 + y, 5.0, 3.0);
+            assert_eq!(plane.distance_squared_px2(&s), 4.0);
+            assert_eq!([3.9, 4.0, 4.1].map(|px2| plane.holds(&s, px2)), [false, false, true]);
+        }
+    }
+
+    #[test]
     fn three_matches_and_f_have_their_plane() {
         let plane = Plane::through(&fundamental(), [0, 1, 2].map(|i| seen(i, 0.0))).expect("an epipole");
         for i in 0..11 {

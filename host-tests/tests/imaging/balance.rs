@@ -3,7 +3,9 @@
 use image::{GrayImage, Luma};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use stereopsis::camera::StereoSource;
+use stereopsis::camera::{
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 use stereopsis::imaging::{Balance, BalancedPair, Histogram};
 use stereopsis_host::run::MemoryPair;
 use stereopsis_host::scene::Scene;
@@ -107,5 +109,61 @@ fn the_second_frame_is_balanced_and_cameras_alike_are_left() {
             |a: &GrayImage| a.iter().zip(right.iter()).map(|(a, b)| f64::from(a.abs_diff(*b))).sum::<f64>();
         assert!(apart(&second[1]) < 0.25 * apart(&other), "x {gain} + {offset}: {:?}", pair.balance());
         assert_eq!(frame(&mut pair), second, "it is the lines as they came that count");
+    }
+}
+
+/// A pair of pictures as another source would give it: of some other format, with masks.
+struct Other {
+    pair: MemoryPair,
+    pixel: PixelFormat,
+}
+
+impl ErrorType for Other {
+    type Error = <MemoryPair as ErrorType>::Error;
+}
+
+impl StereoSource for Other {
+    fn format(&self) -> LineFormat {
+        LineFormat { pixel: self.pixel, ..self.pair.format() }
+    }
+
+    fn max_row_skew_us(&self) -> u32 {
+        9
+    }
+
+    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
+        self.pair.start_frame()
+    }
+
+    fn next_lines(
+        &mut self,
+        left: &mut [u8],
+        right: &mut [u8],
+    ) -> Result<LineStart, CameraError<Self::Error>> {
+        self.pair.next_lines(left, right)
+    }
+
+    fn mask(&self, row: u16, masks: [&mut [u8]; 2]) -> bool {
+        masks.into_iter().for_each(|mask| mask.fill(row as u8));
+        true
+    }
+}
+
+#[test]
+fn a_balanced_pair_says_what_its_source_says() {
+    let (left, right) = Scene::small(320, 240).render();
+    let darker = exposed(&right, 0.6, 0.0);
+    for (pixel, is_balanced) in [(PixelFormat::Grey8, true), (PixelFormat::Bayer8, false)] {
+        let pair = MemoryPair::new(320, left.to_vec(), darker.to_vec()).expect("two pictures");
+        let mut balanced = BalancedPair::new(Other { pair, pixel });
+        assert_eq!((balanced.format().pixel, balanced.max_row_skew_us()), (pixel, 9));
+        let mut masks = [[0; 4]; 2];
+        assert!(balanced.mask(7, masks.each_mut().map(|mask| &mut mask[..])));
+        assert_eq!(masks, [[7; 4]; 2]);
+        // Grey lines alone are balanced.
+        frame(&mut balanced);
+        assert_eq!(frame(&mut balanced)[1] != darker, is_balanced);
+        assert_eq!(balanced.balance() != Balance::NONE, is_balanced);
+        assert_eq!(balanced.release().pixel, pixel);
     }
 }

@@ -54,7 +54,9 @@ fn a_pair_is_taken_in_step() {
             }
             let mut masks = [[9; 320]; 2];
             assert!(pair.mask(row, masks.each_mut().map(|mask| &mut mask[..])));
-            assert_eq!(masks, [0, 1].map(|camera: usize| expected[camera].1[here.clone()]));
+            for (mask, (_, valid)) in masks.iter().zip(&expected) {
+                assert_eq!(mask[..], valid[here.clone()]);
+            }
         }
     }
     // What it says that it takes is enough, and one line fewer is refused.
@@ -88,9 +90,11 @@ fn a_pair_is_taken_in_step() {
     let refused = refused.expect_err("of another size");
     assert_eq!(refused, RectifiedPairError::Raw(format));
     assert!(refused.to_string().starts_with("raw frames of 64x240 px are not those of the remap"));
-    let of_remap = RectifiedPairError::<CameraError<()>>::Remap(RemapError::Lines { needed: 9 });
+    let of_remap = RectifiedPairError::<std::fmt::Error>::Remap(RemapError::Lines { needed: 9 });
     assert_eq!(of_remap.to_string(), RemapError::Lines { needed: 9 }.to_string());
     assert_eq!(RemapPairError::Lines { needed: 9 }.to_string(), of_remap.to_string());
+    let of_source = RectifiedPairError::Source(std::fmt::Error);
+    assert_eq!(of_source.to_string(), std::fmt::Error.to_string());
     assert!(RemapPairError::Sizes.to_string().contains("different sizes"));
 }
 

@@ -234,6 +234,8 @@ mod tests {
         let balance = Balance::between(&narrow, &wide);
         assert_eq!(balance.gain_256ths, 128);
         assert!(near(balance.offset_256ths, 128 - 64), "{balance:?}");
+        // 204.8 256ths are 205.
+        assert_eq!(Balance::between(&bins(2, 4), &bins(3, 5)).gain_256ths, 205);
         // No more than twice, nor less than half.
         assert_eq!(Balance::between(&bins(2, 12), &bins(3, 4)).gain_256ths, 512);
         assert_eq!(Balance::between(&bins(3, 4), &bins(2, 12)).gain_256ths, 128);

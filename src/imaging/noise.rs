@@ -208,6 +208,7 @@ mod tests {
             assert_eq!(meter.level(), level, "{quarter}");
         }
         assert_eq!(NoiseMeter::new().level(), Noise::None);
+        assert_eq!(Noise::ALL.map(Noise::name), ["none", "low", "high"]);
     }
 
     #[test]

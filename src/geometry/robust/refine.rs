@@ -355,4 +355,21 @@ mod tests {
         let off = (start.matrix() - estimate().matrix()).amax();
         assert!(refine(0) == off && refine(1) < 0.5 * off && refine(20) < 1e-6, "{off} {}", refine(20));
     }
+
+    #[test]
+    fn slopes_are_right_far_from_the_lines() {
+        // Up to eight pixels off, the derivative is taken where the points belong.
+        let (seen, frames, f) = (seen(8.0), frames(), estimate());
+        let loss = Biweight { width_squared: 400.0 };
+        let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
+        let cost = |step: &[f64; FREE]| problem.last_equations(&f.moved(step), None).expect("a cost").cost;
+        let equations = problem.equations(&f, None).expect("equations");
+        for i in 0..FREE {
+            let slope = (cost(&along(i, 1e-6)) - cost(&along(i, -1e-6))) / 2e-6;
+            let expected = -6.0 / 400.0 * equations.right[i];
+            // Where they were seen, some would be off by twenty times as much.
+            let size = equations.matrix[i][i].sqrt();
+            assert!((slope - expected).abs() < 2e-4 * size, "{i}: {slope} {expected} {size}");
+        }
+    }
 }

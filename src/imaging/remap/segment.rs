@@ -175,4 +175,46 @@ mod tests {
         let places: [i32; 5] = core::array::from_fn(|k| run.places(0).nth(k).unwrap_or(0) - HALF);
         assert_eq!(places, [0, 16, 64, 144, 256]);
     }
+
+    #[test]
+    fn pieces_are_narrow_when_the_first_and_the_last_are() {
+        let is_narrow = |step: i32, bend: i32, pieces: usize| Run { start: 9, step, bend }.is_narrow(pieces);
+        assert_eq!([-1, 0, NARROW, NARROW + 1].map(|step| is_narrow(step, 0, 4)), [false, true, true, false]);
+        // Steps that shrink to less than none, and that grow to less than two pixels or to more.
+        assert_eq!([2, 3].map(|pieces| is_narrow(100, -50, pieces)), [true, false]);
+        assert_eq!([2, 3].map(|pieces| is_narrow(NARROW - 10, 5, pieces)), [true, false]);
+        assert!(!is_narrow(-10, 5, 4) && !is_narrow(NARROW + 10, -5, 4));
+    }
+
+    #[test]
+    fn pixels_outside_are_masked() {
+        // Sixteen pixels in steps of three quarters of a pixel, from two pixels left of an image of 9.
+        let raw = ImageSize { width: 9, height: 4 };
+        let run = |start: i32, step: i32| Run { start: start + HALF, step, bend: 0 };
+        let one = 1 << BITS;
+        for piece in [0, 2] {
+            let mask = |column: Run, row: Run| {
+                let mut valid = [1; 16];
+                Segment { column, row, part: Part::Some }.mask(raw, piece, &mut valid);
+                valid
+            };
+            let along = run(-2 * one, one / 4 * 3);
+            let inside: [u8; 16] = core::array::from_fn(|k| {
+                let x = -2.0 + 0.75 * k as f64;
+                u8::from((0.0..=8.0).contains(&x))
+            });
+            assert_eq!(mask(along, run(one, 0)), inside);
+            // Below and above the image there is none; its last row is one.
+            let rows =
+                [-one / 8, 0, 3 * one, 3 * one + one / 8].map(|row| mask(along, run(row, 0)) == inside);
+            assert_eq!(rows, [false, true, true, false]);
+            assert_eq!(mask(along, run(-one / 8, 0)), [0; 16]);
+        }
+        let part = |part: Part| {
+            let mut valid = [7; 4];
+            Segment { column: run(0, one), row: run(0, 0), part }.mask(raw, 2, &mut valid);
+            valid
+        };
+        assert_eq!([part(Part::None), part(Part::All)], [[0; 4], [7; 4]]);
+    }
 }

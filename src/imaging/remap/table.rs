@@ -256,3 +256,35 @@ fn fixed<T: Real>(place: &Point2<T>, is_described: bool) -> [i32; 2] {
     let is_one = is_described && is_near(place.x) && is_near(place.y);
     [to_fixed(place.x) & !1 | i32::from(!is_one), to_fixed(place.y)]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_is_rounded_and_marked_where_it_is_none() {
+        let at = |x: f64, y: f64| fixed(&Point2::new(x, y), true);
+        assert_eq!(at(1.0, -2.0), [65536, -131_072]);
+        assert_eq!(fixed(&Point2::new(1.0, -2.0), false), [65537, -131_072]);
+        // Rounded to nearest, columns to even numbers below.
+        assert_eq!(at(4.4 / 65536.0, 4.4 / 65536.0), [4, 4]);
+        assert_eq!(at(5.6 / 65536.0, 5.6 / 65536.0), [6, 6]);
+        // From 2048 px to the left and above to 6143 px to the right and below.
+        let [first, last] = [-2048, 6143].map(|px| px << 16);
+        assert_eq!([at(-2048.0, 6143.0), at(6143.0, -2048.0)], [[first, last], [last, first]]);
+        assert_eq!([at(-2049.0, 0.0), at(6144.0, 0.0)], [[first | 1, 0], [last | 1, 0]]);
+        assert_eq!([at(0.0, -2049.0), at(0.0, 6144.0)], [[1, first], [1, last]]);
+    }
+
+    #[test]
+    fn slots_are_of_nodes_and_of_two_rows_each() {
+        let size = |width: u16, height: u16| ImageSize { width, height };
+        // One node before and two after those of the cells.
+        assert_eq!(RemapTable::<0>::slots(size(64, 48), 3), (8 + 3) * (6 + 3) + 24);
+        assert_eq!(RemapTable::<0>::slots(size(65, 49), 3), (9 + 3) * (7 + 3) + 25);
+        assert_eq!(RemapTable::<0>::slots(size(64, 48), 6), (1 + 3) * (1 + 3) + 24);
+        assert_eq!(RemapTable::<0>::most_slots(size(64, 48)), RemapTable::<0>::slots(size(64, 48), 3));
+        let widest = |side: u16| RemapTable::<0> { size: size(99, side), ..RemapTable::empty() }.widest();
+        assert_eq!([1, 8, 15, 16, 31, 32, 63, 64, 98].map(widest), [3, 3, 3, 4, 4, 5, 5, 6, 6]);
+    }
+}

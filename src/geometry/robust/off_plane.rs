@@ -223,8 +223,8 @@ mod tests {
         (epipole, far_away(&epipole), seen)
     }
 
-    /// Counts of what is farther than the root of `least` px from where the plane far away shows it: all, what
-    /// agrees, and what would by chance, of those within the root of `agreeing` px of their lines.
+    /// Counts of what is farther than the root of `least` px from where the plane far away shows it: all,
+    /// what agrees, and what would by chance, of those within the root of `agreeing` px of their lines.
     fn counted(
         seen: &[Correspondence<f64>],
         (least, agreeing): (f64, f64),

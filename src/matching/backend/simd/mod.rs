@@ -288,23 +288,6 @@ mod tests {
         assert_eq!(Kernel::available().last(), Some(Kernel::detect()), "the fastest");
     }
 
-    #[cfg(target_arch = "x86_64")]
-    #[test]
-    fn a_kernel_is_there_where_the_processor_has_its_instructions() {
-        extern crate std;
-        use std::is_x86_feature_detected as has;
-        let has_avx2 = has!("avx2") && has!("lzcnt");
-        let has_avx512 = has!("avx512f")
-            && has!("avx512bw")
-            && has!("avx512cd")
-            && has!("avx512dq")
-            && has!("avx512vl")
-            && has!("avx512vbmi")
-            && has!("avx512bitalg");
-        assert_eq!(Backend::of(Kernel::Avx2).is_some(), has_avx2);
-        assert_eq!(Backend::of(Kernel::Avx512).is_some(), has_avx2 && has_avx512);
-    }
-
     #[test]
     fn candidates_are_whole_steps_that_there_is_room_for() {
         for (disparities, most) in

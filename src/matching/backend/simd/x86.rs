@@ -136,3 +136,24 @@ fn in_widest<S: WindowParameters, const CELLS: usize, const ALL: bool>(
 ) {
     windows::row::<S, Widest, CELLS, ALL>(work, select);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors_are_used_where_the_processor_has_their_instructions() {
+        extern crate std;
+        use std::is_x86_feature_detected as has;
+        let has_avx2 = has!("avx2") && has!("lzcnt");
+        let has_avx512 = has!("avx512f")
+            && has!("avx512bw")
+            && has!("avx512cd")
+            && has!("avx512dq")
+            && has!("avx512vl")
+            && has!("avx512vbmi")
+            && has!("avx512bitalg");
+        assert_eq!(Avx2::detect().is_some(), has_avx2);
+        assert_eq!(Avx512::detect().is_some(), has_avx2 && has_avx512);
+    }
+}

@@ -49,8 +49,8 @@ pub(super) struct State<C> {
 /// Bits that memory is unlikely to hold by chance.
 const MARK: usize = 0x57E2_E0D5;
 
-/// Largest number of bytes of counters and padding beside matcher and lines.
-const FIXED_BYTES: usize = 352;
+/// Largest number of bytes of counters and padding beside the arrays of matcher and lines.
+const FIXED_BYTES: usize = 416;
 
 /// Returns the bytes of memory that are enough for a matcher on any target, as the macros of `stereopsis.h`
 /// do.
@@ -58,7 +58,7 @@ const FIXED_BYTES: usize = 352;
 /// `disparities` is a multiple of 16, and `width` at least as large.
 pub const fn memory_bytes<S: Method>(width: usize, disparities: usize) -> usize {
     // Five lines of two cameras.
-    matching::state_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
+    matching::array_bytes::<S>(width, disparities) + 2 * 5 * width + FIXED_BYTES
 }
 
 /// Hash (FNV-1a) of a name and sizes, so that handles of different libraries in one program differ.

@@ -19,12 +19,12 @@ pub struct WinnersHandle {
 }
 
 /// Bytes beside the arrays.
-const FIXED_BYTES: usize = 128;
+const FIXED_BYTES: usize = 192;
 
 /// Returns the bytes of memory that are enough for the second half of any method, on any target.
 pub const fn winners_bytes(width: usize, disparities: usize) -> usize {
     let line = 5 + WinnerRecord::BYTES;
-    matching::state_bytes::<External<matching::Block>>(width, disparities) + line * width + FIXED_BYTES
+    matching::array_bytes::<External<matching::Block>>(width, disparities) + line * width + FIXED_BYTES
 }
 
 impl<S: Method, const W: usize, const D: usize> Content for WinnerPipeline<S, W, D>

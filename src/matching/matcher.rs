@@ -1,23 +1,21 @@
 //! A matcher: its memory, and one row after another through the stages.
 
-use super::backend::{Backend, Isa, SMOOTH_MARGIN, STEP, columns_begin};
+use super::backend::{Backend, Isa, SMOOTH_MARGIN, columns_begin};
 use super::capacity::{Capacity, Supported};
 use super::config::{Config, ConfigError};
 use super::error::MatchError;
 use super::kernel::{Kernel, KernelError};
 use super::memory::rings::{BAND, HISTORY, LOOK_AHEAD, Ring, row, row_mut};
 use super::memory::workspace::Finished;
-use super::memory::{Bytes, Memory, Parts, Rows5};
+use super::memory::{Memory, Parts, Rows5};
 use super::method::{Frame, Method};
 use super::row::Row;
 use super::stages::{self, mask};
+use super::state_bytes::state_bytes;
 #[cfg(feature = "trace")]
 use super::trace::StageTrace;
 use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
-
-/// Bytes of matcher state beside the arrays: counters, the configuration, padding.
-const FIXED_BYTES: usize = 64;
 
 /// Disparities for lines up to `W` pixels and `D` disparities, in memory of its own and of fixed size.
 ///
@@ -46,22 +44,6 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     columns_begin: u8,
     /// Lines taken, counting on below the image.
     pub(super) taken: usize,
-}
-
-/// Bytes of a [`Matcher`] for lines of `width` and `disparities`, rounded up to what it can be made for.
-///
-/// ```
-/// use stereopsis::matching::{Block, Fast, Matcher, state_bytes};
-/// assert!(size_of::<Matcher<Block, 320, 64>>() <= state_bytes::<Block>(320, 64));
-/// assert!(state_bytes::<Block>(320, 64) <= 43 * 1024);
-/// assert!(state_bytes::<Fast>(320, 64) <= 43 * 1024);
-/// ```
-pub const fn state_bytes<S: Method>(width: usize, disparities: usize) -> usize {
-    let lanes = disparities.next_multiple_of(STEP);
-    let width = if width < lanes { lanes } else { width };
-    let Bytes { fixed, per_pixel, per_candidate, per_disparity } = S::BYTES;
-    let per_column = per_pixel + per_candidate * lanes + 2 + 1 + 1 + 1 + 2 + (2 + 1) * BAND + 2 * HISTORY;
-    width * per_column + per_disparity * lanes + fixed + FIXED_BYTES
 }
 
 impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
@@ -298,6 +280,7 @@ where
 
 #[cfg(test)]
 mod tests {
+    use super::super::state_bytes::{FIXED_BYTES, PADDING_BYTES};
     use super::*;
     use crate::matching::method::{External, Fast, Sgm, SgmEdge, SgmLean};
 
@@ -311,11 +294,15 @@ mod tests {
         let spares = [
             spare::<Sgm, 16, 16>(),
             spare::<Sgm, 332, 48>(),
+            spare::<Sgm, 333, 48>(),
+            spare::<SgmEdge, 1281, 128>(),
+            spare::<SgmEdge, 1242, 128>(),
             spare::<SgmLean, 320, 64>(),
             spare::<SgmEdge, 700, 256>(),
             spare::<External<Sgm>, 320, 64>(),
         ];
-        let is_little = |spare: &Option<usize>| spare.is_some_and(|spare| spare <= FIXED_BYTES);
+        let is_little =
+            |spare: &Option<usize>| spare.is_some_and(|spare| spare <= FIXED_BYTES + PADDING_BYTES);
         assert!(spares.iter().all(is_little), "{spares:?}");
     }
 

@@ -48,6 +48,7 @@ mod filter;
 mod stages;
 mod row;
 mod error;
+mod state_bytes;
 mod matcher;
 mod external;
 
@@ -57,10 +58,13 @@ pub use config::{Checks, Config, ConfigError};
 pub use error::MatchError;
 pub use filter::Filter;
 pub use kernel::{Kernel, KernelError};
-pub use matcher::{Matcher, state_bytes};
+pub use matcher::Matcher;
 pub use memory::record::WinnerRecord;
 pub use method::{Block, External, Fast, Method, Sgm, SgmEdge, SgmLean};
 pub use penalties::Penalties;
 pub use row::Row;
+#[cfg(feature = "ffi")]
+pub(crate) use state_bytes::array_bytes;
+pub use state_bytes::state_bytes;
 #[cfg(feature = "trace")]
 pub use trace::{StageTrace, TracedStage};

@@ -2,7 +2,7 @@
 
 use super::list::PATTERNS;
 use super::{Any, Twin, W, compare, emulated, long, pipeline};
-use image::GrayImage;
+use image::{GrayImage, Luma};
 use stereopsis::matching::{Block, Checks, Config, Fast, Sgm, SgmEdge, SgmLean};
 use stereopsis::units::{Disparity, PixelFlags};
 use stereopsis_model::scene::Scene;
@@ -119,4 +119,24 @@ fn surfaces_of_any_size_are_counted() {
     whole_surface::<SgmLean>();
     whole_surface::<Sgm>();
     whole_surface::<SgmEdge>();
+}
+
+/// A wall whose disparity is beside the ends of words of candidates: its neighbours are in other words.
+fn wall_at_ends_of_words<S: Twin>() {
+    let mut pipeline = pipeline::<S>();
+    let texture = Pattern::Noise.pair(288, 12, 5).0;
+    for (disparities, shift) in [(32, 15), (32, 16), (64, 31), (64, 32), (128, 63), (128, 64), (128, 96)] {
+        let seen = |by: u32| GrayImage::from_fn(160, 12, |x, y| Luma([texture.get_pixel(x + by, y).0[0]]));
+        let config = Config { checks: Checks::DENSE, ..Config::for_method::<S>(160, 12, disparities) };
+        let map = compare(&mut pipeline, &config, &(seen(0), seen(shift))).unwrap_or_else(|e| panic!("{e}"));
+        let near = |answer: &&Disparity| answer.to_f32().is_some_and(|px| (px - shift as f32).abs() < 0.6);
+        assert!(map.disparity.iter().filter(near).count() > 500, "{shift} px");
+    }
+}
+
+#[test]
+fn winners_have_their_neighbours_in_other_words() {
+    wall_at_ends_of_words::<Fast>();
+    wall_at_ends_of_words::<Block>();
+    wall_at_ends_of_words::<Sgm>();
 }

@@ -32,34 +32,34 @@ unsafe impl Plain for Note {}
 // SAFETY: eight `u8` (`repr(transparent)`).
 unsafe impl Plain for WinnerRecord {}
 
-/// The bytes before the first place where a `To` may stand, be it beyond the end, and how many whole ones
-/// there are from it on.
+/// The bytes before the first place where a `To` may stand, and how many whole ones there are from it on;
+/// `None` where that place is beyond the end.
 ///
 /// [`slice::align_to`] gives the same, with panics inside that an optimiser for size leaves in.
 #[inline(always)]
-fn whole<From: Plain, To: Plain>(numbers: &[From]) -> (usize, usize) {
+fn whole<From: Plain, To: Plain>(numbers: &[From]) -> Option<(usize, usize)> {
     let (bytes, align) = (size_of_val(numbers), align_of::<To>());
     let skip =
         if align > align_of::<From>() { numbers.as_ptr().addr().wrapping_neg() & (align - 1) } else { 0 };
-    (skip, bytes.saturating_sub(skip) / size_of::<To>())
+    if skip <= bytes { Some((skip, (bytes - skip) / size_of::<To>())) } else { None }
 }
 
 /// The part of `numbers` that stands at places of `To` and is a whole number of them: all of it where the
 /// slice begins at such a place and has whole ones.
 #[inline(always)]
 pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
-    let (skip, count) = whole::<From, To>(numbers);
-    // SAFETY: the first place is where a `To` may stand, and all of them are inside of `numbers`. Both types
-    // are plain: every value of the one's bytes is a value of the other.
-    unsafe { slice::from_raw_parts(numbers.as_ptr().wrapping_byte_add(skip).cast(), count) }
+    let Some((skip, count)) = whole::<From, To>(numbers) else { return &[] };
+    // SAFETY: the places are inside of `numbers` and where a `To` may stand. Both types are plain: every
+    // value of the one's bytes is a value of the other.
+    unsafe { slice::from_raw_parts(numbers.as_ptr().byte_add(skip).cast(), count) }
 }
 
 /// Mutable access to what [`view`] shows.
 #[inline(always)]
 pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]) -> &mut [To] {
-    let (skip, count) = whole::<From, To>(numbers);
+    let Some((skip, count)) = whole::<From, To>(numbers) else { return &mut [] };
     // SAFETY: as in `view`, and the other way round.
-    unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().wrapping_byte_add(skip).cast(), count) }
+    unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().byte_add(skip).cast(), count) }
 }
 
 #[cfg(test)]

@@ -1,12 +1,13 @@
 // What the settings take of a microcontroller: the figures of `stereo plan`, which are in the page's data.
 
 // Bytes of RAM of a pipeline, at most: exact, for they grow with the width, the disparities in steps of 16,
-// and the product of both.
+// and the product of both, and rows of no whole words have some bytes between them.
 function ramBytes(method, width, disparities) {
-  const [product, perColumn, perDisparity, fixed] = DATA.ram[METHODS[method]];
+  const [product, perColumn, perDisparity, fixed, padding] = DATA.ram[METHODS[method]];
   const lanes = 16 * Math.ceil(disparities / 16);
   const columns = Math.max(width, lanes);
-  return product * columns * lanes + perColumn * columns + perDisparity * lanes + fixed;
+  return product * columns * lanes + perColumn * columns + perDisparity * lanes + fixed
+    + (columns % 4 ? padding : 0);
 }
 
 // Instructions for a frame on a core.

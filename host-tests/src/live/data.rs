@@ -122,8 +122,8 @@ fn of_methods(value: impl Fn(MethodName) -> Value) -> Value {
 }
 
 /// What a pipeline's bytes are made of: for each pixel of a row and candidate, each pixel of a row, each
-/// candidate, and all.
-fn ram(method: MethodName) -> [i64; 4] {
+/// candidate, all, and for rows of no whole words.
+fn ram(method: MethodName) -> [i64; 5] {
     const COLUMNS: [u16; 2] = [256, 512];
     const LANES: [u16; 2] = [16, 32];
     let bytes = |width, lanes| method.pipeline_bytes(width, lanes) as i64;
@@ -136,7 +136,9 @@ fn ram(method: MethodName) -> [i64; 4] {
         - product * i64::from(COLUMNS[0]) * i64::from(LANES[0])
         - per_column * i64::from(COLUMNS[0])
         - per_lane * i64::from(LANES[0]);
-    [product, per_column, per_lane, fixed]
+    // One column more than whole words.
+    let padding = bytes(COLUMNS[0] + 1, LANES[0]) - a - per_column - product * i64::from(LANES[0]);
+    [product, per_column, per_lane, fixed, padding]
 }
 
 /// Instructions for a pixel, by core and method, at 16 disparities, 32 and so on.
@@ -163,10 +165,11 @@ mod tests {
     #[test]
     fn bytes_of_any_size_are_the_pipelines() {
         for method in MethodName::ALL {
-            let [product, per_column, per_lane, fixed] = ram(method);
-            for (width, disparities) in [(160, 32), (320, 64), (640, 64), (641, 128), (1280, 256), (4096, 16)]
+            let [product, per_column, per_lane, fixed, padding] = ram(method);
+            for (width, disparities) in [(160, 32), (320, 64), (640, 64), (641, 128), (643, 128), (1280, 256)]
             {
                 let (columns, lanes) = (i64::from(width), i64::from(disparities));
+                let fixed = fixed + if columns % 4 == 0 { 0 } else { padding };
                 let bytes = product * columns * lanes + per_column * columns + per_lane * lanes + fixed;
                 assert_eq!(bytes, method.pipeline_bytes(width, disparities) as i64, "{method} {width}");
             }

@@ -151,15 +151,18 @@ pub fn partly_hidden_row(
 /// The answers of a row of cells with those that are partly hidden replaced by the plane through answers of
 /// the same surface that are not: weighted least squares over 21 by 21 cells, for what is left of their
 /// windows pulls answers towards what is in front. `peaks` and `is_hidden` are all cells, row by row;
-/// `out` begins with the row itself. A cell with fewer than twelve such answers around it keeps its own.
+/// `out` begins with the row itself. A cell with fewer than twelve such answers around it keeps its own, and
+/// no plane goes on beyond the last of `frames`.
 pub fn extend_row(
     peaks: &[Result<FocusPeak, NoFocus>],
     is_hidden: &[bool],
     columns: usize,
     row: usize,
+    frames: u32,
     out: &mut [Result<FocusPeak, NoFocus>],
 ) {
     let cells = Cells { peaks, columns };
+    let last_q8 = frames.saturating_sub(1).saturating_mul(256);
     let hidden = |x: i32, y: i32| cells.index(x, y).and_then(|place| is_hidden.get(place)).copied();
     for (x, out) in (0..columns as i32).zip(out) {
         let (Ok(own), Some(true)) = (out, hidden(x, row as i32)) else { continue };
@@ -181,7 +184,7 @@ pub fn extend_row(
             && let Some((value, _)) = plane.value(RIDGE)
         {
             // Rounded; a cast of what is out of range is the nearest end.
-            own.position_q8 = (own.position_q8 as f32 + value + 0.5) as u32;
+            own.position_q8 = ((own.position_q8 as f32 + value + 0.5) as u32).min(last_q8);
         }
     }
 }

@@ -116,13 +116,13 @@ pub fn run(
         plane_row(&raw, width, y, out);
     }
     if let Some(order) = scale.map(FocusScale::order).or_else(|| FocusOrder::of_answers(&peaks, width)) {
-        beside_edges(&mut peaks, width, order);
+        beside_edges(&mut peaks, width, order, count as u32);
     }
     Ok(FocusResult { width, peaks, picture })
 }
 
 /// Takes the rim of what is in front away, and carries what is behind up to the edge.
-fn beside_edges(peaks: &mut [Result<FocusPeak, NoFocus>], width: usize, order: FocusOrder) {
+fn beside_edges(peaks: &mut [Result<FocusPeak, NoFocus>], width: usize, order: FocusOrder, frames: u32) {
     let whole = peaks.to_vec();
     for (y, out) in peaks.chunks_exact_mut(width).enumerate() {
         uncover_row(&whole, width, y, order, out);
@@ -133,7 +133,7 @@ fn beside_edges(peaks: &mut [Result<FocusPeak, NoFocus>], width: usize, order: F
         partly_hidden_row(&uncovered, width, y, order, out);
     }
     for (y, out) in peaks.chunks_exact_mut(width).enumerate() {
-        extend_row(&uncovered, &is_hidden, width, y, out);
+        extend_row(&uncovered, &is_hidden, width, y, frames, out);
     }
 }
 

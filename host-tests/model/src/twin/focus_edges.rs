@@ -107,8 +107,8 @@ pub fn partly_hidden(columns: usize, peaks: &[Option<Peak>], later_is_nearer: bo
 }
 
 /// Places of answers, those that are hidden on the plane through twelve or more answers that are not, up to
-/// ten columns and rows away, and differ by at most five twelfths of a width.
-pub fn extended(columns: usize, peaks: &[Option<Peak>], is_hidden: &[bool]) -> Vec<Option<f64>> {
+/// ten columns and rows away, and differ by at most five twelfths of a width; from the first frame to `last`.
+pub fn extended(columns: usize, peaks: &[Option<Peak>], is_hidden: &[bool], last: f64) -> Vec<Option<f64>> {
     use nalgebra::{Matrix3, Vector3};
     let map = Map { columns, peaks };
     let value = |((x, y), &is_own_hidden): ((i64, i64), &bool)| {
@@ -135,7 +135,8 @@ pub fn extended(columns: usize, peaks: &[Option<Peak>], is_hidden: &[bool]) -> V
         }
         squares += Matrix3::from_diagonal(&Vector3::new(0.0, 0.5 * all, 0.5 * all));
         let plane = squares.lu().solve(&values).expect("a ridge");
-        Some(own[0] as f64 + plane.dot(&Vector3::new(1.0, -middle[0], -middle[1])))
+        let place = own[0] as f64 + plane.dot(&Vector3::new(1.0, -middle[0], -middle[1]));
+        Some(place.clamp(0.0, last))
     };
     map.places().zip(is_hidden).map(value).collect()
 }

@@ -1,6 +1,7 @@
 //! Lines of both cameras by PIO and DMA, to the cores whose bands take them.
 
-use crate::band::{Destination, HEIGHT, WIDTH};
+use board_matchers::two_cores::Destination;
+use board_matchers::{HEIGHT, WIDTH};
 use embassy_futures::join::join;
 use embassy_rp::dma::Channel;
 use embassy_rp::gpio::Output;

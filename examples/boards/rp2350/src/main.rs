@@ -3,16 +3,16 @@
 //! * [`sensors`]: both sensors set up alike, over an I2C bus each, on one master clock.
 //! * [`capture`]: on core 0, above all else: a trigger for every frame, a line of both cameras by PIO and
 //!   DMA, handed to the cores whose bands take it.
-//! * [`band`], [`matching`]: on both cores, a band of rows each.
+//! * [`matching`]: on both cores, a band of rows each.
 //! * The nearest distance of every frame goes out by the UART.
 #![no_std]
 #![no_main]
 
-mod band;
 mod capture;
 mod matching;
 mod sensors;
 
+use board_matchers::two_cores::{Memory, bands, start};
 use capture::{Camera, Capture};
 use core::panic::PanicInfo;
 use embassy_executor::{Executor, InterruptExecutor};
@@ -37,8 +37,7 @@ static CORE_0: StaticCell<Executor> = StaticCell::new();
 static CORE_1: StaticCell<Executor> = StaticCell::new();
 /// The matcher takes 2 KB, the executor and the interrupts the rest.
 static STACK_1: ConstStaticCell<Stack<8192>> = ConstStaticCell::new(Stack::new());
-static MEMORIES: [ConstStaticCell<band::Memory>; 2] =
-    [const { ConstStaticCell::new(band::Memory::new()) }; 2];
+static MEMORIES: [ConstStaticCell<Memory>; 2] = [const { ConstStaticCell::new(Memory::new()) }; 2];
 
 /// Runs the capture above whatever core 0 does.
 #[embassy_rp::interrupt]
@@ -85,7 +84,7 @@ fn main() -> ! {
     let right = Camera::new(sm1, &program, &pins, Channel::new(p.DMA_CH1, Irqs));
 
     // A band of the frame for each core, with memory of its own.
-    let mut bands = band::bands().zip(&MEMORIES).map(|(band, memory)| band::start(band, memory.take()));
+    let mut bands = bands().zip(&MEMORIES).map(|(band, memory)| start(band, memory.take()));
     let (first, to_first) = bands.next().expect("a frame has rows");
     let (second, to_second) = bands.next().expect("there are rows for two cores");
 

@@ -1,7 +1,8 @@
 //! Lines by DCMI: a circular DMA over two lines, each copied into a slot of the queue while the other fills.
 
 use crate::Irqs;
-use crate::rows::{Destination, HEIGHT, LINE};
+use board_matchers::one_core::Destination;
+use board_matchers::{HEIGHT, LINE};
 use core::cell::UnsafeCell;
 use embassy_stm32::Peri;
 use embassy_stm32::dcmi::{

@@ -2,14 +2,14 @@
 //! has the wiring.
 //!
 //! * [`capture`]: above all else, lines by DCMI and DMA into the queue.
-//! * [`rows`]: the memory of the queue and of the pipeline.
+//! * [`board_matchers`]: the memory of the queue and of the pipeline.
 //! * The task here matches them, and says the nearest distance of every frame on the UART.
 #![no_std]
 #![no_main]
 
 mod capture;
-mod rows;
 
+use board_matchers::one_core::{Matching, Memory, start};
 use core::panic::PanicInfo;
 use embassy_executor::{Executor, InterruptExecutor};
 use embassy_stm32::dma::InterruptHandler;
@@ -20,7 +20,6 @@ use embassy_stm32::rcc;
 use embassy_stm32::usart::{Config as UartConfig, UartTx};
 use embassy_stm32::{Config as ChipConfig, bind_interrupts};
 use embassy_time::{Duration, with_timeout};
-use rows::{Matching, Memory};
 use static_cell::{ConstStaticCell, StaticCell};
 
 /// A frame that takes longer has stopped.
@@ -80,7 +79,7 @@ fn main() -> ! {
         hsync: p.PA4,
         clock: p.PA6,
     };
-    let (matching, destination) = rows::start(MEMORY.take());
+    let (matching, destination) = start(MEMORY.take());
     let port = capture::Port::new(p.DCMI, p.DMA1_CH0, Irqs, pins, destination);
     interrupt::UART5.set_priority(Priority::P6);
     ABOVE.start(interrupt::UART5).spawn(capture::run(port).expect("one capture"));

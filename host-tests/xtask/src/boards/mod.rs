@@ -38,7 +38,7 @@ const MOST_OFF: f64 = 0.05;
 /// The test step.
 pub fn run() -> Outcome {
     setup::targets(&BOARDS.map(|board| board.target))?;
-    for folder in ["spi-cameras", "emulated"] {
+    for folder in ["spi-cameras", "matchers", "emulated"] {
         run_command(&mut cargo(folder, "fmt --check"))?;
     }
     BOARDS.iter().try_for_each(Board::run)?;

@@ -2,22 +2,20 @@
 #![no_std]
 #![no_main]
 
+use board_matchers::one_core::{Matching, Memory, start};
+use board_matchers::{HEIGHT, WIDTH};
 use embassy_futures::{block_on, join::join};
 use emulated_boards::{Checksum, capture, entry, matched};
 use static_cell::ConstStaticCell;
 
-#[path = "../../../stm32h743/src/rows.rs"]
-#[expect(dead_code, reason = "the board's task says depths, this program the rows")]
-mod rows;
-
-static MEMORY: ConstStaticCell<rows::Memory> = ConstStaticCell::new(rows::Memory::new());
+static MEMORY: ConstStaticCell<Memory> = ConstStaticCell::new(Memory::new());
 
 #[entry]
 fn main() -> ! {
     let mut checksum = Checksum::new();
-    let (matching, mut destination) = rows::start(MEMORY.take());
-    let rows::Matching { rows: pipeline, mut cameras, mut lines, .. } = matching;
-    let captured = capture(rows::WIDTH, rows::HEIGHT, |frame, start, (left, right)| {
+    let (matching, mut destination) = start(MEMORY.take());
+    let Matching { rows, mut cameras, mut lines, .. } = matching;
+    let captured = capture(WIDTH, HEIGHT, |frame, start, (left, right)| {
         let mut line = destination.producer.begin().expect("a slot, for each line is matched at once");
         let bytes = line.bytes();
         bytes[..left.len()].copy_from_slice(left);
@@ -25,7 +23,7 @@ fn main() -> ! {
         destination.producer.finish(line, frame, start);
         destination.notifier.notify();
     });
-    let matched = matched(pipeline, &mut cameras, &mut lines, |_| true, &mut checksum);
+    let matched = matched(rows, &mut cameras, &mut lines, |_| true, &mut checksum);
     block_on(join(captured, matched));
     checksum.end()
 }

@@ -10,7 +10,6 @@ mod formats;
 mod handoff;
 mod hm01b0;
 mod on_spi;
-mod orderings;
 mod scripted;
 mod sensors;
 mod signal;

@@ -81,6 +81,13 @@ fn foreign(name: &str, text: &str) -> Vec<String> {
     lines.filter_map(|(line, n)| found(line).map(|what| format!("{name}:{n}: {what}"))).collect()
 }
 
+/// Modules of a Rust file that are taken from outside of its folder.
+fn modules_from_elsewhere(name: &str, text: &str) -> Vec<String> {
+    let is_elsewhere = |line: &str| line.trim_start().starts_with("#[path") && line.contains("..");
+    let lines = text.lines().zip(1..).filter(|(line, _)| is_elsewhere(line));
+    lines.map(|(line, n)| format!("{name}:{n}: {}", line.trim())).collect()
+}
+
 /// Calls that can panic, outside `#[cfg(test)]`.
 fn panics(name: &str, tokens: &[TokenTree]) -> Vec<String> {
     let mut found = Vec::new();
@@ -126,6 +133,14 @@ fn the_readme_is_short() {
 #[test]
 fn nothing_of_one_machine_is_written_down() {
     let wrong: Vec<_> = source::files().iter().flat_map(|name| foreign(name, &source::text(name))).collect();
+    assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_package_has_its_modules_in_its_folder() {
+    let files = source::files();
+    let rust = files.iter().filter(|name| name.ends_with(".rs"));
+    let wrong: Vec<_> = rust.flat_map(|name| modules_from_elsewhere(name, &source::text(name))).collect();
     assert!(wrong.is_empty(), "\n{}", wrong.join("\n"));
 }
 
@@ -200,6 +215,12 @@ mod shown_to_fail {
         let text = "// cfg(stereopsis_simd)\n#[cfg(stereopsis_simd)]\n    if cfg!(target_arch = \"arm\") {\n\
                     #[cfg_attr(not(stereopsis_dsp), inline)]\n#[cfg(test)]\nuse stereopsis_x;\n";
         assert_eq!(target_lines(text), 3);
+    }
+
+    #[test]
+    fn modules_from_elsewhere_are_found() {
+        let text = "#[path = \"no_x86.rs\"]\nmod x86;\n    #[path = \"../queue.rs\"]\nmod queue;\n";
+        assert_eq!(modules_from_elsewhere("a.rs", text), ["a.rs:3: #[path = \"../queue.rs\"]"]);
     }
 
     #[test]

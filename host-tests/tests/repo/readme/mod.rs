@@ -88,7 +88,7 @@ fn the_lectures_equations_are_functions_that_are_there() {
 
 #[test]
 fn what_assures_is_there() {
-    const FOLDERS: [&str; 3] = ["host-tests/tests", "host-tests/model/tests", "host-tests/fuzz/tests"];
+    const FOLDERS: [&str; 4] = ["src", "host-tests/tests", "host-tests/model/tests", "host-tests/fuzz/tests"];
     let tests: Vec<_> = FOLDERS.iter().flat_map(|folder| source::rust_files(folder)).collect();
     let text = read(&root().join("docs/assurance.md"));
     let promises = text.lines().skip_while(|line| !line.starts_with("| promise"));

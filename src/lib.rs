@@ -6,6 +6,7 @@
 //! ```text
 //! errors         what errors say
 //! units math     types with units: Disparity, Millimetres, PixelFlags; the one file that names libm
+//! dsp            instructions of Arm on four bytes, where the target has them
 //! stored         values read back by serde, through their constructors' checks
 //! geometry       camera models, two-view geometry, pose, robust estimation, rectification; no pixels
 //! camera         traits of line sources, two cameras as a stereo source, sensor drivers, line hand-off
@@ -39,6 +40,10 @@ pub use nalgebra;
 mod errors;
 pub mod units;
 mod math;
+
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+#[allow(dead_code, reason = "on a Cortex-M55 vectors do the most of it")]
+mod dsp;
 
 #[macro_use]
 mod stored;

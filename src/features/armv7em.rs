@@ -1,91 +1,13 @@
 //! Scores of FAST-9 and smoothing for four pixels at a time, in Arm's instructions on four bytes of a word
 //! and on its halves (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 that have them).
-#![allow(unsafe_code)]
 
 use super::circle::CIRCLE;
-use core::arch::asm;
+use crate::dsp::{add_even_bytes, add_odd_bytes, max, max_min, min, saturating_subtract, select};
 
 /// Pixels at a time.
 pub(super) const PIXELS: usize = 4;
 /// Columns that their circles lie in.
 pub(super) const COLUMNS: usize = PIXELS + 6;
-
-macro_rules! two_operands {
-    ($(#[$doc:meta])* $name:ident: $($instruction:literal),*) => {
-        $(#[$doc])*
-        #[inline(always)]
-        pub(super) fn $name(a: u32, b: u32) -> u32 {
-            let out;
-            // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is
-            // there. The marks of lanes are not said to be preserved.
-            unsafe {
-                asm!($($instruction),*, out = out(reg) out, a = in(reg) a, b = in(reg) b,
-                    options(pure, nomem, nostack));
-            }
-            out
-        }
-    };
-}
-
-two_operands!(
-    /// The differences of bytes, 0 where `b` is more.
-    difference: "uqsub8 {out}, {a}, {b}"
-);
-two_operands!(
-    /// The lesser bytes: the subtraction marks the lanes that do not borrow, and `sel` picks by the marks.
-    min: "usub8 {out}, {a}, {b}", "sel {out}, {b}, {a}"
-);
-two_operands!(
-    /// The greater bytes: `sel` picks by the marks of the subtraction.
-    max: "usub8 {out}, {a}, {b}", "sel {out}, {a}, {b}"
-);
-
-two_operands!(
-    /// The halves of `a` and the bytes 0 and 2 of `b`.
-    plus_even: "uxtab16 {out}, {a}, {b}"
-);
-two_operands!(
-    /// The halves of `a` and the bytes 1 and 3 of `b`.
-    plus_odd: "uxtab16 {out}, {a}, {b}, ror #8"
-);
-
-/// The greater bytes and the lesser ones, from one subtraction.
-#[inline(always)]
-fn max_min([a, b]: [u32; 2]) -> (u32, u32) {
-    let (greater, lesser);
-    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
-    unsafe {
-        asm!("usub8 {greater}, {a}, {b}", "sel {greater}, {a}, {b}", "sel {lesser}, {b}, {a}",
-            greater = out(reg) greater, lesser = out(reg) lesser, a = in(reg) a, b = in(reg) b,
-            options(pure, nomem, nostack));
-    }
-    (greater, lesser)
-}
-
-/// The bytes of `chosen` where those of `a` are more than those of `least`, 0 for the others.
-#[inline(always)]
-pub(super) fn where_more(a: u32, least: u32, chosen: u32) -> u32 {
-    let out;
-    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
-    unsafe {
-        asm!("usub8 {out}, {least}, {a}", "sel {out}, {none}, {chosen}", out = out(reg) out, a = in(reg) a,
-            least = in(reg) least, none = in(reg) 0, chosen = in(reg) chosen,
-            options(pure, nomem, nostack));
-    }
-    out
-}
-
-/// The bytes of `chosen` where those of `a` are no more than those of `most`, 0 for the others.
-#[inline(always)]
-fn unless_more(a: u32, most: u32, chosen: u32) -> u32 {
-    let out;
-    // SAFETY: instructions on registers alone, of the extension that `--cfg stereopsis_dsp` says is there.
-    unsafe {
-        asm!("usub8 {out}, {most}, {a}", "sel {out}, {chosen}, {none}", out = out(reg) out, a = in(reg) a,
-            most = in(reg) most, none = in(reg) 0, chosen = in(reg) chosen, options(pure, nomem, nostack));
-    }
-    out
-}
 
 /// Which of four pixels, whose circles lie in these rows from the first column on, may have nine neighbours
 /// in a row that are brighter by more than `least`: the bytes that are not 0. And which ones may have nine
@@ -97,8 +19,8 @@ pub(super) fn brighter_and_darker(rows: &[&[u8; COLUMNS]; 7], least: u32) -> [u3
     let [(a, e), (b, f), (c, g), (d, h)] =
         [0, 4, 2, 6].map(|i| max_min([i, i + 8].map(|i| on_circle(rows, i))));
     let (brightest, darkest) = (min(min(a, b), min(c, d)), max(max(e, f), max(g, h)));
-    let brighter = difference(difference(brightest, centre), least);
-    [brighter, where_more(difference(centre, darkest), least, u32::MAX)]
+    let brighter = saturating_subtract(saturating_subtract(brightest, centre), least);
+    [brighter, select(least, saturating_subtract(centre, darkest), 0, u32::MAX)]
 }
 
 /// The scores of four pixels, by how much their neighbours are brighter, or darker where all is `inverted`.
@@ -108,8 +30,8 @@ pub(super) fn brighter_and_darker(rows: &[&[u8; COLUMNS]; 7], least: u32) -> [u3
 #[inline(always)]
 pub(super) fn scores_of_four(rows: &[&[u8; COLUMNS]; 7], least: u32, inverted: u32) -> u32 {
     let nine = least_of_best_nine(|i| on_circle(rows, i) ^ inverted);
-    let more = difference(nine, four(rows, (3, 3)) ^ inverted);
-    where_more(more, least, more)
+    let more = saturating_subtract(nine, four(rows, (3, 3)) ^ inverted);
+    select(least, more, 0, more)
 }
 
 /// The neighbours of four pixels at one place of the circle.
@@ -153,7 +75,7 @@ pub(super) fn maxima_of_four(rows: [&[u8; PIXELS + 2]; 3]) -> u32 {
     let here = four(1, 1);
     let before = max(max(four(0, 0), four(0, 1)), max(four(0, 2), four(1, 0)));
     let after = max(max(four(2, 0), four(2, 1)), max(four(2, 2), four(1, 2)));
-    unless_more(after, here, difference(here, before))
+    select(here, after, saturating_subtract(here, before), 0)
 }
 
 /// Sums of four columns of five rows by the weights of [`super::binomial`]: those of the first and the third
@@ -162,7 +84,7 @@ pub(super) fn maxima_of_four(rows: [&[u8; PIXELS + 2]; 3]) -> u32 {
 pub(super) fn column_sums(rows: [&[u8; PIXELS]; 5]) -> [u32; 2] {
     let [a, b, c, d, e] = rows.map(|row| u32::from_le_bytes(*row));
     let sums = |plus: fn(u32, u32) -> u32| sum(plus(plus(0, a), e), plus(plus(0, b), d), plus(0, c));
-    [sums(plus_even), sums(plus_odd)]
+    [sums(add_even_bytes), sums(add_odd_bytes)]
 }
 
 /// Four smoothed pixels, from the sums of their columns and of the two on either side.

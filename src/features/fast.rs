@@ -43,7 +43,8 @@ pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
 /// Where neighbours may be darker, all brightnesses are inverted: no pixel has nine of each.
 #[cfg(stereopsis_dsp)]
 fn scores_in_fours(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
-    use super::armv7em::{COLUMNS, PIXELS, brighter_and_darker, max, scores_of_four};
+    use super::armv7em::{COLUMNS, PIXELS, brighter_and_darker, scores_of_four};
+    use crate::dsp::max;
     let (width, least) = (scores.len(), u32::from(threshold) * 0x0101_0101);
     let (mut begin, last) = (0, width.saturating_sub(COLUMNS));
     while let Some(parts) = parts(rows, begin, width) {
@@ -78,8 +79,9 @@ fn scores_again(
     least: u32,
     [brighter, darker]: [u32; 2],
 ) -> u32 {
-    use super::armv7em::{scores_of_four, where_more};
-    let inverted = darker & !where_more(brighter, 0, u32::MAX);
+    use super::armv7em::scores_of_four;
+    use crate::dsp::select;
+    let inverted = darker & !select(0, brighter, 0, u32::MAX);
     parts(rows, begin, width).map_or(0, |parts| scores_of_four(&parts, least, inverted))
 }
 

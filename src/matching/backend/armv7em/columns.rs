@@ -11,8 +11,8 @@
 //! ```
 
 use super::tables::{self, make, make_equal};
-use super::word::{ONE, add};
 use super::{Rows, rows};
+use crate::dsp::{ONE, add};
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{part, part_mut};

@@ -13,7 +13,6 @@
 //!   `speckle`: their support counted, which all methods share; `vertical`: answers averaged down the
 //!   columns; `fill`: small gaps closed.
 //! * `sgm`: costs along paths.
-//! * `word`: what is done to four bytes.
 //!
 //! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels
 //! are in assembly. A loop over two pixels in a round is entered in its middle where their number is odd.
@@ -36,7 +35,6 @@ mod speckle;
 mod tables;
 mod vertical;
 mod windows;
-mod word;
 
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};

@@ -1,6 +1,6 @@
 //! Answers smoothed down the columns, two at a time: what `portable::vertical` does.
 
-use super::word::{add_halves, half_or, halved_difference, subtract_halves};
+use crate::dsp::{add_halves, halved_difference, select_halves, subtract_halves};
 use crate::matching::backend::portable;
 use crate::matching::backend::portable::vertical::{REACH, ROUNDED, SHARE, SHIFT};
 use crate::matching::memory::rings::LOOK_AHEAD;
@@ -30,7 +30,7 @@ pub(super) fn vertical(here: &mut [Disparity], above: &[Disparity], below: &[Dis
         // What is beyond reach carries into the other answer, if it is not cut off.
         let differences = (up & WITHIN) * LOOK_AHEAD as u32 + (down & WITHIN);
         let moved = add_halves(least, (differences * SHARE + ROUNDED * ONES) >> SHIFT & WITHIN);
-        let out = half_or(is_beyond, REACH * ONES, x, moved);
+        let out = select_halves(is_beyond, REACH * ONES, x, moved);
         *here = [out, out >> 16].map(|half| Disparity::from_raw(half as u16));
     }
     portable::vertical::vertical(rest, above_rest, below_rest);

@@ -8,7 +8,7 @@
 
 use super::Rows;
 use super::rows;
-use super::word::{ONE, min, min_halves, take_less};
+use crate::dsp::{ONE, min, min_halves, take_less};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;

@@ -1,8 +1,8 @@
 //! What a path pays on its way into each pixel of a row, by the change of the left image's brightness.
 
-use super::instructions::{bits_where_less, uqsub8};
 use super::splat;
 use super::walk::Step;
+use crate::dsp::{saturating_subtract, select};
 use crate::matching::memory::slices::part;
 
 /// Pixels in a word.
@@ -17,8 +17,8 @@ const APART: u8 = size_of::<Step>() as u8;
 pub(super) fn changes(here: &[u8], from: &[u8], edges: [u8; 2], out: &mut [u8]) {
     let edges = edges.map(splat);
     let step = |here: u32, from: u32| {
-        let change = uqsub8(here, from) | uqsub8(from, here);
-        let under = edges.map(|edge| bits_where_less(change, edge, splat(APART)));
+        let change = saturating_subtract(here, from) | saturating_subtract(from, here);
+        let under = edges.map(|edge| select(change, edge, 0, splat(APART)));
         2 * splat(APART) - under[0] - under[1]
     };
     let (places, rest) = out.as_chunks_mut::<GROUP>();

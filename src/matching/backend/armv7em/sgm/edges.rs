@@ -1,6 +1,6 @@
 //! A row's agreements, averaged within edges.
 
-use super::instructions::uhadd8;
+use crate::dsp::average;
 use crate::matching::backend::portable::sgm::edges::edges_at;
 use crate::matching::backend::work::{EdgeWork, PathWork};
 use crate::matching::memory::slices::chunks_mut;
@@ -19,9 +19,9 @@ pub(super) fn within_edges(work: &mut PathWork<'_>, stride: usize, edges: EdgeWo
         let choose = |first: u32, second: u32, mask: u32| second ^ (first ^ second) & mask;
         for (cost, (above, below)) in costs.iter_mut().zip(above.iter_mut().zip(below)) {
             let (row, one, two) = (*above, *below, *cost);
-            let both = uhadd8(one, choose(one, two, at_last));
-            *cost = uhadd8(row, choose(row, both, at_next));
-            *above = uhadd8(one, choose(one, row, at_next));
+            let both = average(one, choose(one, two, at_last));
+            *cost = average(row, choose(row, both, at_next));
+            *above = average(one, choose(one, row, at_next));
             *below = two;
         }
     }

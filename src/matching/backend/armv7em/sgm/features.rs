@@ -3,8 +3,8 @@
 
 #![allow(unsafe_code)]
 
-use super::instructions::{max8, min8, uhadd8, uqsub16, with_bit_where_less};
 use super::splat;
+use crate::dsp::{ONE, average, max, min, saturating_subtract_halves, select};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
 use crate::matching::backend::portable::sgm::features_by_four::{COLUMNS, REACH, columns, groups, put};
@@ -27,7 +27,7 @@ unsafe fn codes([above, middle, below]: [*const u8; 3], out: *mut u32, groups: u
         let mut codes = 0;
         macro_rules! look {
             ($($bit:literal: $row:ident $column:literal),*) => {
-                $(codes = with_bit_where_less::<$bit>(codes, word($row, $column), here);)*
+                $(codes = select(word($row, $column), here, codes, codes | ONE << $bit);)*
             };
         }
         look!(0: above 0, 1: above 4, 2: above 8, 3: middle 2);
@@ -116,7 +116,8 @@ impl Cut {
     #[inline(always)]
     fn of(&self, differences: [u32; 2]) -> u32 {
         // What the difference lacks of the greatest, 0 to the range: one saturating subtraction for each end.
-        let [even, odd] = differences.map(|it| uqsub16(self.range, uqsub16(it, self.least)));
+        let [even, odd] = differences
+            .map(|it| saturating_subtract_halves(self.range, saturating_subtract_halves(it, self.least)));
         (self.range | self.range << 8) - (even | odd << 8)
     }
 }
@@ -131,8 +132,8 @@ fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
 /// The ranges of four numbers.
 #[inline(always)]
 fn ranges([before, here, next]: [u32; 3]) -> (u32, u32) {
-    let (a, b) = (uhadd8(before, here), uhadd8(here, next));
-    (2 * min8(here, min8(a, b)), 2 * max8(here, max8(a, b)))
+    let (a, b) = (average(before, here), average(here, next));
+    (2 * min(here, min(a, b)), 2 * max(here, max(a, b)))
 }
 
 /// Features in Arm's instructions on four bytes.

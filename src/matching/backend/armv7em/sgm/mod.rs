@@ -12,13 +12,11 @@
 //! * `winners`: the least of the paths' sums.
 //! * `features`: what is compared, four pixels at a time.
 //! * `edges`: how far a row's costs are averaged with others.
-//! * `instructions`: the instructions that the compiler has no names for.
 
 mod blocks;
 mod changes;
 mod edges;
 mod features;
-mod instructions;
 mod rows;
 mod walk;
 mod winners;

@@ -108,9 +108,10 @@ impl<T: Real> SelfCalibration<T> {
         *self = Self { covariance: [[p, o], [o, p]], since: Pose::identity(), ..Self::EMPTY };
     }
 
-    /// Before a first frame again, which may be one that was seen before: what is known counts a quarter.
+    /// Before a first frame again: what is known counts a hundredth, for frames that are seen again say nothing
+    /// new.
     pub fn begin_again(&mut self) {
-        self.covariance = self.covariance.map(|row| row.map(|x| x * T::of(4.0)));
+        self.covariance = self.covariance.map(|row| row.map(|x| x * T::of(100.0)));
         (self.since, self.frames, self.anchored) = (Pose::identity(), 0, 0);
     }
 

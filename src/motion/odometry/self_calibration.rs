@@ -108,8 +108,8 @@ impl<T: Real> SelfCalibration<T> {
         *self = Self { covariance: [[p, o], [o, p]], since: Pose::identity(), ..Self::EMPTY };
     }
 
-    /// Before a first frame again: what is known counts a hundredth, for frames that are seen again say nothing
-    /// new.
+    /// Before a first frame again: what is known counts a hundredth, for frames that are seen again say
+    /// nothing new.
     pub fn begin_again(&mut self) {
         self.covariance = self.covariance.map(|row| row.map(|x| x * T::of(100.0)));
         (self.since, self.frames, self.anchored) = (Pose::identity(), 0, 0);

@@ -64,11 +64,7 @@ pub fn splice(text: &str) -> Result<String, String> {
 fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
     let mut text = readme.to_owned();
     for (name, make) in parts {
-        let (begin, end) = (format!("<!-- generated: {name} -->\n"), format!("<!-- end: {name} -->"));
-        let first =
-            text.find(&begin).ok_or_else(|| format!("there is no line {}", begin.trim()))? + begin.len();
-        let length = text[first..].find(&end).ok_or_else(|| format!("there is no line {end}"))?;
-        text.replace_range(first..first + length, &format!("\n{}\n", make()));
+        replace_part(&mut text, name, &make())?;
     }
     let elsewhere: usize =
         MADE_ELSEWHERE.iter().map(|name| text.matches(&format!("<!-- generated: {name} -->")).count()).sum();
@@ -76,6 +72,15 @@ fn splice_parts(readme: &str, parts: &[Part]) -> Result<String, String> {
         n if n == parts.len() => Ok(text),
         n => Err(format!("{n} generated parts, of which {} are known", parts.len())),
     }
+}
+
+/// Puts what is made between the lines that name a part.
+pub fn replace_part(text: &mut String, name: &str, made: &str) -> Result<(), String> {
+    let (begin, end) = (format!("<!-- generated: {name} -->\n"), format!("<!-- end: {name} -->"));
+    let first = text.find(&begin).ok_or_else(|| format!("there is no line {}", begin.trim()))? + begin.len();
+    let length = text[first..].find(&end).ok_or_else(|| format!("there is no line {end}"))?;
+    text.replace_range(first..first + length, &format!("\n{made}\n"));
+    Ok(())
 }
 
 /// Memory and delay of all methods in four sizes.

@@ -2,6 +2,7 @@
 //! of this tree.
 
 mod commands;
+mod figures;
 mod generated;
 mod lecture;
 
@@ -115,6 +116,11 @@ fn generated_parts_are_those_of_this_tree() {
     let path = root().join("docs/performance.md");
     let text = read(&path);
     let current = generated::splice(&text).unwrap_or_else(|e| panic!("docs/performance.md: {e}"));
+    let read_me = read(&root().join("README.md"));
+    let mut with_figures = read_me.clone();
+    figures::table(&current)
+        .and_then(|table| generated::replace_part(&mut with_figures, "figures", &table))
+        .unwrap_or_else(|e| panic!("README.md: {e}"));
     let pictures = [
         ("README.md", "", generated::PICTURE, generated::picture()),
         ("docs/firmware.md", "../", generated::DISPLAY, generated::display()),
@@ -126,8 +132,10 @@ fn generated_parts_are_those_of_this_tree() {
             fs::write(&path, generated::as_png(picture)).expect("the picture");
         }
         fs::write(&path, current).expect("docs/performance.md");
+        fs::write(root().join("README.md"), with_figures).expect("README.md");
         return;
     }
+    assert!(read_me == with_figures, "README.md's figures are not current, run `cargo xtask readme`");
     let differs = text.lines().zip(current.lines()).find(|(old, new)| old != new);
     assert!(text == current, "docs/performance.md is not current, run `cargo xtask readme`: {differs:?}");
     for (page, to_root, place, picture) in &pictures {

@@ -1,25 +1,127 @@
-//! Groups of four pixels side by side, whose features are made at a time.
+//! Features of four pixels side by side at a time: gradients in half-words, of the even and the odd pixels,
+//! all else in the four bytes of a word.
+
+use super::features::FeatureRows;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{part, part_mut};
 
 /// Columns in a word.
-pub(in crate::matching::backend) const COLUMNS: usize = 4;
+const COLUMNS: usize = 4;
 /// Columns to each side that a code looks at.
-pub(in crate::matching::backend) const REACH: usize = 4;
+const REACH: usize = 4;
 /// Columns that four pixels look at.
 const NEAR: usize = COLUMNS + 2 * REACH;
+/// The low seven bits of each byte.
+const SEVEN: u32 = 0x7f7f_7f7f;
+/// The top bit of each half-word: what a difference has more that may be negative.
+pub(in crate::matching::backend) const SIGNS: u32 = 0x8000_8000;
 
 /// A number of each pixel.
-pub(in crate::matching::backend) type Group = [u8; COLUMNS];
+type Group = [u8; COLUMNS];
+
+/// What is done to four pixels by whatever instructions a core has.
+pub(in crate::matching::backend) trait FourPixels {
+    /// The codes of the pixels `here`: of the first neighbour the lowest bit, 1 where it is darker.
+    fn codes(here: u32, neighbours: [u32; 8]) -> u32;
+    /// The sums of two half-words and of the even bytes of another word, and of its odd bytes.
+    fn plus_even(halves: u32, bytes: u32) -> u32 {
+        halves + (bytes & 0x00ff_00ff)
+    }
+    fn plus_odd(halves: u32, bytes: u32) -> u32 {
+        halves + (bytes >> 8 & 0x00ff_00ff)
+    }
+    /// Cuts differences off, those of the even and of the odd pixels in half-words and [`SIGNS`] more, at
+    /// `most` to each side, which both half-words of it are, and makes them that much more. A byte each.
+    fn cut(differences: [u32; 2], most: u32) -> u32;
+    /// The least and the greatest of each number and those halfway to its neighbours.
+    fn ranges(numbers: [u32; 3]) -> (u32, u32);
+}
+
+impl<F: FourPixels> FeatureRows for F {
+    /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
+    /// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
+    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+        let count = along.len().min(across.len()).min(census.len());
+        let groups = groups(width, count);
+        let [above2, above, here, below, below2] = *lines;
+        codes::<F>([above2, here, below2], places(census, groups));
+        gradients::<F>([above, here, below], gradient, [places(along, groups), places(across, groups)]);
+        let after = REACH + groups * COLUMNS;
+        let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
+        for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
+            let near =
+                lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
+            let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened());
+            let [mut code, mut one, mut other] = [[[0; COLUMNS]]; 3];
+            codes::<F>([above2, here, below2], &mut code);
+            gradients::<F>([above, here, below], gradient, [&mut one, &mut other]);
+            for (row, [four]) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
+                put(part_mut(row, x..), four);
+            }
+        }
+    }
+
+    /// Half of each number.
+    fn halve(numbers: &[u8], halves: &mut [u8]) {
+        let count = numbers.len().min(halves.len());
+        let (groups, rest) = part(numbers, ..count).as_chunks::<COLUMNS>();
+        let (of_groups, of_rest) = part_mut(halves, ..count).as_chunks_mut::<COLUMNS>();
+        for (to, &from) in of_groups.iter_mut().zip(groups) {
+            keep_loop();
+            *to = (word(from) >> 1 & SEVEN).to_le_bytes();
+        }
+        for (to, from) in of_rest.iter_mut().zip(rest) {
+            keep_loop();
+            *to = from >> 1;
+        }
+    }
+
+    /// The ranges of all numbers but the two at the ends.
+    #[inline(never)]
+    fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
+        let count = numbers.len().saturating_sub(2);
+        let [before, here, next] =
+            [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
+        let [(low, low_rest), (high, high_rest)] =
+            [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
+        let fours = before.0.iter().zip(here.0).zip(next.0);
+        for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
+            keep_loop();
+            let (least, greatest) = F::ranges([before, here, next].map(|four| word(*four)));
+            (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
+        }
+        let ones = before.1.iter().zip(here.1).zip(next.1);
+        for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
+            keep_loop();
+            (*low, *high) = F::between(before, here, next);
+        }
+    }
+
+    #[inline(always)]
+    fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
+        let (least, greatest) = F::ranges([before, here, next].map(u32::from));
+        (least as u8, greatest as u8)
+    }
+}
 
 /// How many groups, from column [`REACH`] on, see nothing outside of a line of `width` pixels and have all
 /// places among `count`.
 #[inline(always)]
-pub(in crate::matching::backend) fn groups(width: usize, count: usize) -> usize {
+fn groups(width: usize, count: usize) -> usize {
     (width.saturating_sub(NEAR - COLUMNS) / COLUMNS).min(count.saturating_sub(REACH) / COLUMNS)
+}
+
+/// The places of so many groups from [`REACH`] on.
+#[inline(always)]
+fn places(row: &mut [u8], groups: usize) -> &mut [Group] {
+    part_mut(row.get_mut(REACH..).unwrap_or_default().as_chunks_mut().0, ..groups)
 }
 
 /// The columns of a line from [`REACH`] before `place` on; those outside the line are the nearest inside.
 #[inline(never)]
-pub(in crate::matching::backend) fn columns(line: &[u8], place: usize) -> Group {
+fn columns(line: &[u8], place: usize) -> Group {
     let end = |column: Option<&u8>| [column.copied().unwrap_or(0); COLUMNS];
     if place + COLUMNS <= REACH {
         return end(line.first());
@@ -37,9 +139,68 @@ pub(in crate::matching::backend) fn columns(line: &[u8], place: usize) -> Group 
 
 /// Writes the numbers of a group for which the row has a place.
 #[inline(always)]
-pub(in crate::matching::backend) fn put(row: &mut [u8], group: Group) {
+fn put(row: &mut [u8], group: Group) {
     match row.first_chunk_mut() {
         Some(four) => *four = group,
         None => row.iter_mut().zip(group).for_each(|(to, from)| *to = from),
     }
+}
+
+/// The groups of a row from a column on.
+#[inline(always)]
+fn from(row: &[u8], column: usize) -> &[Group] {
+    row.get(column..).unwrap_or_default().as_chunks().0
+}
+
+/// The codes of groups of four pixels, from the rows two above, here, and two below: each group sees twelve
+/// columns of a row, which are four further with each.
+#[inline(never)]
+fn codes<F: FourPixels>([above, middle, below]: [&[u8]; 3], out: &mut [Group]) {
+    let rows = from(above, 0).windows(3).zip(from(below, 0).windows(3));
+    let row = from(middle, REACH).iter().zip(from(middle, REACH / 2).windows(2));
+    for ((out, (&here, sides)), (above, below)) in out.iter_mut().zip(row).zip(rows) {
+        keep_loop();
+        let (&[a, b, c], &[d, e], &[f, g, h]) = (above, sides, below) else { return };
+        *out = F::codes(word(here), [a, b, c, d, e, f, g, h].map(word)).to_le_bytes();
+    }
+}
+
+/// The gradients along the line and across it, likewise, from the rows above, here, and below. The columns
+/// that they are of stand beside a group's pixels and between them.
+#[inline(never)]
+fn gradients<F: FourPixels>(
+    [above, middle, below]: [&[u8]; 3],
+    most: u8,
+    [along, across]: [&mut [Group]; 2],
+) {
+    let most = u32::from(most) * 0x0001_0001;
+    let [above, middle, below] =
+        [above, middle, below].map(|row| from(row, REACH - 1).iter().copied().map(word));
+    // Sums down the columns, the middle row twice; and how much more there is below than above.
+    let mut columns = above.zip(middle).zip(below).map(|((above, middle), below)| {
+        let sum = |plus: fn(u32, u32) -> u32| plus(plus(plus(plus(0, above), middle), middle), below);
+        let fall = |plus: fn(u32, u32) -> u32| plus(SIGNS / 4, below) - plus(0, above);
+        ([sum(F::plus_even), sum(F::plus_odd)], [fall(F::plus_even), fall(F::plus_odd)])
+    });
+    let Some((mut sum, mut fall)) = columns.next() else { return };
+    for ((along, across), (next_sum, next_fall)) in along.iter_mut().zip(across).zip(columns) {
+        keep_loop();
+        let sides = [on(sum[0], next_sum[0]) + SIGNS - sum[0], on(sum[1], next_sum[1]) + SIGNS - sum[1]];
+        *along = F::cut(sides, most).to_le_bytes();
+        let on = [on(fall[0], next_fall[0]), on(fall[1], next_fall[1])];
+        let ends = [fall[0] + 2 * fall[1] + on[0], fall[1] + 2 * on[0] + on[1]];
+        *across = F::cut(ends, most).to_le_bytes();
+        (sum, fall) = (next_sum, next_fall);
+    }
+}
+
+/// From each half on: two columns further.
+#[inline(always)]
+fn on(last: u32, next: u32) -> u32 {
+    last >> 16 | next << 16
+}
+
+#[inline(always)]
+fn word(four: Group) -> u32 {
+    u32::from_le_bytes(four)
 }

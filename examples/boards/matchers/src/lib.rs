@@ -3,10 +3,14 @@
 //!
 //! * [`one_core`]: the whole frame.
 //! * [`two_cores`]: a band of its rows on each core.
+//! * [`Decimal`]: what is said of a frame, as text.
 #![no_std]
 
+mod decimal;
 pub mod one_core;
 pub mod two_cores;
+
+pub use decimal::Decimal;
 
 use stereopsis::camera::{
     LineFormat, LineListener, LineNotifier, LineProducer, LineSignal, LineSlots, PixelFormat, PolledLines,

@@ -12,6 +12,7 @@ mod capture;
 mod matching;
 mod sensors;
 
+use board_matchers::Decimal;
 use board_matchers::two_cores::{Memory, bands, start};
 use capture::{Camera, Capture};
 use core::panic::PanicInfo;
@@ -118,23 +119,11 @@ async fn show(mut uart: UartTx<'static, Blocking>) -> ! {
             let nearest_mm = one.nearest_mm.min(other.nearest_mm);
             let lost_lines = u32::from(one.lost_lines) + u32::from(other.lost_lines);
             for (number, end) in [(one.sequence, b' '), (nearest_mm.into(), b' '), (lost_lines, b'\n')] {
-                write(&mut uart, number, end);
+                // Nobody is there to be told when the UART fails.
+                let _ = uart.blocking_write(Decimal::new(number, end).bytes());
             }
         }
     }
-}
-
-/// Writes a number and what follows it.
-fn write(uart: &mut UartTx<'static, Blocking>, mut number: u32, end: u8) {
-    let (mut text, mut first) = ([end; 11], 10);
-    for (at, digit) in text.iter_mut().enumerate().rev().skip(1) {
-        (*digit, number, first) = (b'0' + (number % 10) as u8, number / 10, at);
-        if number == 0 {
-            break;
-        }
-    }
-    // Nobody is there to be told when the UART fails.
-    let _ = uart.blocking_write(text.get(first..).unwrap_or_default());
 }
 
 /// The vendor's library panics where it is misused; both cores stop then, and a debugger says where.

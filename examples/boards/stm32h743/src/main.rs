@@ -9,6 +9,7 @@
 
 mod capture;
 
+use board_matchers::Decimal;
 use board_matchers::one_core::{Matching, Memory, start};
 use core::panic::PanicInfo;
 use embassy_executor::{Executor, InterruptExecutor};
@@ -107,22 +108,10 @@ async fn depth(matching: Matching, mut uart: UartTx<'static, Blocking>) -> ! {
         }
         let lost_lines = rows.lost_lines();
         for (number, end) in [(frame.sequence, b' '), (nearest_mm.into(), b' '), (lost_lines.into(), b'\n')] {
-            write(&mut uart, number, end);
+            // Nobody is there to be told when the UART fails.
+            let _ = uart.blocking_write(Decimal::new(number, end).bytes());
         }
     }
-}
-
-/// Writes a number and what follows it.
-fn write(uart: &mut UartTx<'static, Blocking>, mut number: u32, end: u8) {
-    let (mut text, mut first) = ([end; 11], 10);
-    for (at, digit) in text.iter_mut().enumerate().rev().skip(1) {
-        (*digit, number, first) = (b'0' + (number % 10) as u8, number / 10, at);
-        if number == 0 {
-            break;
-        }
-    }
-    // Nobody is there to be told when the UART fails.
-    let _ = uart.blocking_write(text.get(first..).unwrap_or_default());
 }
 
 /// The vendor's library panics where it is misused; the core stops then, and a debugger says where.

@@ -16,7 +16,8 @@
 //!     1. the row that came out last gets back the answers that were refused as unsure (`withhold`);
 //!     2. denoise, if asked for: the lines that come in are smoothed against noise (in `method`);
 //!     3. census of the row that comes in (`method`, `backend`);
-//!     4. texture and edges of its pixels, and the open places that have none, if asked for;
+//!     4. texture and edges of its pixels, the open places that have none, and patterns that repeat along it,
+//!        if asked for;
 //!     5. what was filled in the row that came out last is taken out of it: no later row looks at a guess;
 //!     6. median of 3 x 3 answers, if asked for;
 //!     7. costs, their aggregation and winner-take-all (`method`, `backend`);

@@ -8,6 +8,7 @@
 //! * `derives`: what firmware expects of every public type. `features`: how conditions name them.
 //! * `lines`, `comments`, `names`: what a reader meets: line lengths, doc comments that stand alone, unique
 //!   public names.
+//! * `stages`: the matcher's list of them beside what is called.
 //! * `source`: the files, for the others. `paths`: what a file names.
 
 mod circles;
@@ -24,3 +25,4 @@ mod paths;
 mod pio;
 mod readme;
 mod source;
+mod stages;

@@ -17,6 +17,7 @@
 //! texture::take_texture       line y                              texture of y, counts of the window
 //! fattening::take_edges       lines y - 1 .. y + 1                edges of y
 //! open::take_open             lines y - 1, y + 1, edges of y      open blocks of every other y
+//! repeats::take_repeats       line y, of every fifth row          blocks that repeat
 //! fill::undo_fill             flags y - r - 5                     finished y - r - 5, as before the fill
 //! median::take_medians        band y - r - 5 .. y - r - 3         finished y - r - 4
 //! S::select: costs, paths     codes to y, or lines around y       costs of y - r
@@ -29,6 +30,7 @@
 //! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
 //! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
 //! open::limit_lengths         open blocks                         surface lengths y - r
+//! speckle::end_surfaces       support, below the last row         support
 //! confidence::make_confidences notes y - r - 4, band, finished    confidences and flags y - r - 4
 //! speckle::drop_speckle       band y - r, y - r - 1, y - r - 4    support; finished and flags y - r - 4
 //! vertical::filter_vertically finished y - r - 5, band y - r      finished y - r - 4

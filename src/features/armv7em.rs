@@ -1,5 +1,5 @@
 //! Scores of FAST-9 and smoothing for four pixels at a time, in Arm's instructions on four bytes of a word
-//! and on its halves (`--cfg stereopsis_dsp`: Cortex-M4, M7, and M33 that have them).
+//! and on its halves (Cortex-M4, M7, M55, and M33 that have them).
 
 use super::circle::CIRCLE;
 use crate::dsp::{add_even_bytes, add_odd_bytes, max, max_min, min, saturating_subtract, select};

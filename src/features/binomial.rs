@@ -6,7 +6,7 @@
 /// for the two columns at either end, which are left as they are: no patch reaches them.
 pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
     let width = rows.iter().fold(out.len(), |least, row| least.min(row.len()));
-    #[cfg(stereopsis_dsp)]
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
     if width >= 8 {
         return in_fours(rows, width, out);
     }
@@ -26,7 +26,7 @@ pub fn binomial5_row(rows: &[&[u8]; 5], out: &mut [u8]) {
 
 /// [`binomial5_row`] of the first `width` pixels four at a time, the last four moved back to end with the
 /// row.
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 fn in_fours(rows: &[&[u8]; 5], width: usize, out: &mut [u8]) {
     use super::armv7em::{PIXELS, column_sums, smooth_four};
     use crate::imaging::part;

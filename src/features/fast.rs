@@ -5,7 +5,7 @@
 //! same way for all of them.
 
 use super::circle::CIRCLE;
-#[cfg(any(stereopsis_dsp, stereopsis_simd))]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors, stereopsis_simd))]
 use crate::imaging::part;
 
 /// Scores of one row from the three rows above it, the row and the three below: by how many grey levels the
@@ -16,7 +16,7 @@ use crate::imaging::part;
 pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
     let width = rows.iter().fold(scores.len(), |least, row| least.min(row.len()));
     let Some(scores) = scores.get_mut(..width) else { return };
-    #[cfg(stereopsis_dsp)]
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
     if width >= super::armv7em::COLUMNS {
         if let [a, b, c, .., d, e, f] = scores {
             (*a, *b, *c, *d, *e, *f) = (0, 0, 0, 0, 0, 0);
@@ -41,7 +41,7 @@ pub fn fast_scores(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
 /// [`fast_scores`] of rows of one length four pixels at a time, the last four moved back to end with the row.
 ///
 /// Where neighbours may be darker, all brightnesses are inverted: no pixel has nine of each.
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 fn scores_in_fours(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
     use super::armv7em::{COLUMNS, PIXELS, brighter_and_darker, scores_of_four};
     use crate::dsp::max;
@@ -69,7 +69,7 @@ fn scores_in_fours(rows: &[&[u8]; 7], threshold: u8, scores: &mut [u8]) {
 }
 
 /// The scores of four pixels for a second time: seldom needed, and so the code for it is elsewhere.
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 #[cold]
 #[inline(never)]
 fn scores_again(
@@ -86,7 +86,7 @@ fn scores_again(
 }
 
 /// The columns of some pixels' circles in rows of `width`; `None` where they are not inside.
-#[cfg(any(stereopsis_dsp, stereopsis_simd))]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors, stereopsis_simd))]
 #[inline(always)]
 fn parts<'a, const N: usize>(rows: &[&'a [u8]; 7], begin: usize, width: usize) -> Option<[&'a [u8; N]; 7]> {
     let end = begin + N;

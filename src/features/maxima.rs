@@ -10,9 +10,9 @@ pub(super) const WITH_NEIGHBOURS: usize = COLUMNS + 2;
 /// the scores, from one column before them to one after.
 #[inline(always)]
 pub(super) fn maxima_of_four(rows: [&[u8; WITH_NEIGHBOURS]; 3]) -> u32 {
-    #[cfg(stereopsis_dsp)]
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
     return super::armv7em::maxima_of_four(rows);
-    #[cfg(not(stereopsis_dsp))]
+    #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
     {
         let [above, here, below] = rows;
         if here[1..=COLUMNS] == [0; COLUMNS] {

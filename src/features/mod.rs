@@ -16,7 +16,7 @@
 //! and a search along epipolar lines compares them with lines.
 
 mod circle;
-#[cfg(stereopsis_dsp)]
+#[cfg(any(stereopsis_dsp, stereopsis_vectors))]
 mod armv7em;
 mod binomial;
 mod corner;

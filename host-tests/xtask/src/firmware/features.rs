@@ -5,7 +5,7 @@ use super::plain::Tabled;
 use super::program::Optimised;
 use super::results::{Ran, Taken};
 use crate::steps::{Failure, Outcome};
-use firmware_boards::Board;
+use firmware_boards::{self as board, Board};
 use firmware_scenes::scene::{Scene, SceneCamera};
 use firmware_scenes::two_pictures::{HEIGHT, TwoPictures, WIDTH};
 use serde::Serialize;
@@ -123,6 +123,12 @@ fn bytes(pictures: &TwoPictures) -> Vec<u8> {
 
 impl Tabled for Features {
     const NAME: &'static str = "features";
+    const CASES: &'static [(Board, Optimised)] = &[
+        (board::M4, Optimised::Speed),
+        (board::M7, Optimised::Speed),
+        (board::M55, Optimised::Speed),
+        (board::M7, Optimised::Size),
+    ];
     const COLUMNS: &'static [&'static str] =
         &["detection, for a pixel", "matching", "features", "matches", "of them right"];
 

@@ -247,7 +247,7 @@ mod tests {
     #[test]
     fn smooth_blocks_are_open_that_are_joined_to_an_open_one() {
         let mut chance = chance();
-        for round in 0..600 {
+        for round in 0..if cfg!(miri) { 10 } else { 600 } {
             let rough = [2, 5, 20, 90, 400][round % 5];
             let smooth: [bool; COUNT] = core::array::from_fn(|_| chance(rough) > 0);
             let rare = [1, 3, 40, 100][round % 4];

@@ -41,8 +41,8 @@ fn a_principal_point_that_is_off_is_found_and_corrected() {
         let lack = rig.disparity_px + f64::from(columns);
         assert!(rig.is_sure && rig.is_applied && rig.is_off(), "{columns}: {rig:?}");
         assert!(lack.abs() < 4.0 * rig.sigma_px && rig.sigma_px < 0.06, "{columns}: {rig:?}");
-        // 1 px uncorrected is 5 % and more.
-        assert!(share < 3.0 * unmoved.max(2e-3), "{columns}: {share} beside {unmoved}");
+        // 1 px uncorrected is 5 % and more; frames that are counted twice make it 2 times as much.
+        assert!(share < 1.4 * unmoved.max(2e-3), "{columns}: {share} beside {unmoved}");
     }
 }
 

@@ -24,10 +24,11 @@ type Group = [u8; COLUMNS];
 pub(in crate::matching::backend) trait FourPixels {
     /// The codes of the pixels `here`: of the first neighbour the lowest bit, 1 where it is darker.
     fn codes(here: u32, neighbours: [u32; 8]) -> u32;
-    /// The sums of two half-words and of the even bytes of another word, and of its odd bytes.
+    /// The sums of half-words and of the even bytes of another word.
     fn plus_even(halves: u32, bytes: u32) -> u32 {
         halves + (bytes & 0x00ff_00ff)
     }
+    /// The sums of half-words and of the odd bytes of another word.
     fn plus_odd(halves: u32, bytes: u32) -> u32 {
         halves + (bytes >> 8 & 0x00ff_00ff)
     }

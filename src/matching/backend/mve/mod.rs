@@ -7,7 +7,7 @@
 //! * [`windows`]: sums along the row, and the winner of each pixel.
 //! * [`sgm`]: costs along paths.
 //! * [`mod@sides`]: what is beside winners. [`mod@fractions`]: where between whole pixels they are.
-//! * [`left_right`]: the left-right check.
+//! * [`left_right`]: the left-right check. [`answers`]: winners made answers.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
 //! * [`mod@edges`], [`mod@fattening`]: answers refused that spread.
 //! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
@@ -28,6 +28,7 @@
 //! predicate outlives a call. Addresses of loads that widen and of stores that narrow have to be in one of
 //! the first registers, which are named too.
 
+mod answers;
 mod census;
 mod columns;
 mod edges;
@@ -44,17 +45,17 @@ mod windows;
 use super::armv7em;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
-use super::portable::{self, left_right_rows};
+use super::portable;
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, MASKS, PathWork, Rules, STEP,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, MASKS, PathWork, STEP,
     SmoothWork, SpeckleWork, WindowWork,
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{chunks, part, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::{Lengths, Select, WinnerRows};
-use crate::units::{Disparity, PixelFlags};
+use crate::matching::memory::winners::{Lengths, Select};
+use crate::units::Disparity;
 use core::ops::Range;
 use sides::{complete, spread};
 use windows::{BESIDE_SUMS, Windows, best_of_the_rest};
@@ -120,7 +121,7 @@ impl Isa for Backend {
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
         left_right::keep(winners.costs, winners.disparities, right, kept);
-        answer::<P>(&winners, kept, rules, fractions, answers, flags);
+        answers::answer::<P>(&winners, kept, rules, fractions, answers, flags);
     }
 
     #[inline(always)]
@@ -158,19 +159,6 @@ impl Isa for Backend {
     fn speckle(self, work: SpeckleWork<'_>) {
         speckle::speckle(work);
     }
-}
-
-#[inline(never)]
-fn answer<P: MethodParameters>(
-    winners: &WinnerRows<'_>,
-    kept: &[u8],
-    rules: &Rules,
-    fractions: &mut [u8],
-    answers: &mut [Disparity],
-    flags: &mut [PixelFlags],
-) {
-    fractions::fractions::<P>(winners.below, winners.costs, winners.above, fractions);
-    left_right_rows::flag_and_answer(winners, kept, rules, fractions, answers, flags);
 }
 
 #[inline(never)]
@@ -226,7 +214,7 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
 ) {
     let stride = if STRIDE > 0 { STRIDE } else { stride };
     let Select { disparities, winners, unique } = select;
-    let WinnerRows { mut below, mut costs, mut above, disparities: mut found } = winners.rows(begin);
+    let mut rows = winners.rows(begin);
     // The column that leaves at the first pixel is among them.
     let from = |column: usize| part(columns, (column * stride).min(columns.len())..);
     let (leaves, enters) = (from(OUTSIDE + begin - S::RADIUS_X - 1), from(OUTSIDE + begin + S::RADIUS_X));
@@ -271,12 +259,7 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
             let (cost, disparity) = windows.only();
             check(cost, &mut || best_of_the_rest(disparity.into(), part(mask, ..stride), windows.sums()));
         }
-        let rows = [&mut below, &mut costs, &mut above, &mut found].map(|rest| {
-            let (these, others) = split_mut(core::mem::take(rest), count);
-            *rest = others;
-            these
-        });
-        spread(windows.room, rows, done, disparities);
+        spread(windows.room, &mut rows, done..done + count, disparities);
         done += count;
     }
 }

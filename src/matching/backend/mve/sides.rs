@@ -2,9 +2,11 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use crate::matching::memory::winners::WinnerRows;
 use core::arch::asm;
+use core::ops::Range;
 
-/// Bytes of a winner's record: the cost above it, its own, the one below, its disparity.
+/// Bytes of a winner's record: the cost above it, its own, the one below, the complement of its disparity.
 pub(super) const RECORD: usize = 4;
 
 /// The other side for the side that a winner lacks which is the smallest or the last of the pixel's
@@ -49,16 +51,16 @@ pub(super) fn complete(rows: [&mut [u8]; 4], disparities: usize) {
     }
 }
 
-/// Puts the first records of the `room`, as many as there are `winners`, into rows, with the other side for
-/// the side that a winner lacks which is the smallest or the last of the pixel's candidates: of these a row's
-/// first pixel has one, the next one two, and so on up to `disparities`. `first` is the number of the first
-/// pixel in the row. Eighteen instructions for 16 pixels.
+/// Puts the first records of the `room` into these places of the rows, with the other side for the side that
+/// a winner lacks which is the smallest or the last of the pixel's candidates: of these a row's first pixel
+/// has one, the next one two, and so on up to `disparities`. Nineteen instructions for 16 pixels.
 #[inline(never)]
-pub(super) fn spread(room: &[u8], rows: [&mut [u8]; 4], first: usize, disparities: usize) {
-    let [below, costs, above, winners] = rows;
-    let count = winners.len();
+pub(super) fn spread(room: &[u8], rows: &mut WinnerRows<'_>, places: Range<usize>, disparities: usize) {
+    let WinnerRows { below, costs, above, disparities: winners } = rows;
+    let (first, count) = (places.start, places.len());
     let groups = count.div_ceil(LANES);
-    let is_there = below.len() == count && costs.len() == count && above.len() == count;
+    let lengths = [below.len(), costs.len(), above.len(), winners.len()];
+    let is_there = lengths.iter().all(|&length| length >= places.end);
     if count == 0 || !is_there || room.len() < groups * LANES * RECORD {
         return;
     }
@@ -74,6 +76,7 @@ pub(super) fn spread(room: &[u8], rows: [&mut [u8]; 4], first: usize, disparitie
             "vld41.8 {{q0, q1, q2, q3}}, [{room}]",
             "vld42.8 {{q0, q1, q2, q3}}, [{room}]",
             "vld43.8 {{q0, q1, q2, q3}}, [{room}]!",
+            "vmvn q3, q3",
             "vmin.u8 q6, q4, q5",
             "vqadd.u8 q4, q4, {lanes}",
             "vpt.i8 eq, q3, zr",
@@ -90,8 +93,10 @@ pub(super) fn spread(room: &[u8], rows: [&mut [u8]; 4], first: usize, disparitie
             "le lr, 2b",
             groups = in(reg) groups, count = inout(reg) count => _, first = in(reg) first.min(255),
             last = in(reg) disparities - 1, lanes = in(reg) LANES, room = inout(reg) room.as_ptr() => _,
-            winners = inout(reg) winners.as_mut_ptr() => _, below = inout(reg) below.as_mut_ptr() => _,
-            above = inout(reg) above.as_mut_ptr() => _, costs = inout(reg) costs.as_mut_ptr() => _,
+            winners = inout(reg) winners.as_mut_ptr().add(first) => _,
+            below = inout(reg) below.as_mut_ptr().add(first) => _,
+            above = inout(reg) above.as_mut_ptr().add(first) => _,
+            costs = inout(reg) costs.as_mut_ptr().add(first) => _,
             inout("r4") 0 => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,
             out("q5") _, out("q6") _, options(nostack),
         );

@@ -3,12 +3,16 @@
 
 use super::LANES;
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS};
+use crate::matching::config::Checks;
 use crate::matching::memory::slices::split_mut;
 use crate::units::Disparity;
 use core::arch::asm;
 
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = MARGIN / 2;
+
+/// The radius that has code of its own.
+const USUAL: usize = Checks::DEFAULT.smoothing_radius as usize;
 
 /// The reciprocals of 1, 3, 5 and so on, by 2^16; the first, which nothing is multiplied by, as 0.
 static HALVES: [u16; REACH + 1] = {
@@ -38,7 +42,10 @@ pub(super) fn smooth(
     before.fill(Disparity::NONE.raw());
     after.fill(Disparity::NONE.raw());
     copy(answers, inside);
-    pairs(answers, room, step, usize::from(radius).min(REACH));
+    match usize::from(radius) {
+        USUAL => pairs::<USUAL>(answers, room, step, USUAL),
+        radius => pairs::<0>(answers, room, step, radius.min(REACH)),
+    }
     count(room, lengths, width);
 }
 
@@ -65,11 +72,13 @@ fn copy(answers: &[Disparity], to: &mut [u16]) {
 /// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its
 /// beginning, a byte for each: all ones where a surface begins.
 ///
-/// For eight answers 15 instructions, and 12 for each pair.
+/// For eight answers 15 instructions and 12 for each pair; two less for each where the `RADIUS` is known, which is 0
+/// where it is not.
 #[inline(never)]
-fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: usize) {
+fn pairs<const RADIUS: usize>(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: usize) {
+    const { assert!(RADIUS <= REACH) };
     let count = answers.len();
-    if count == 0 || room.len() < count + MARGIN {
+    if count == 0 || room.len() < count + MARGIN || RADIUS > 0 && RADIUS != radius {
         return;
     }
     let room = room.as_mut_ptr();
@@ -90,8 +99,10 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
             "vcmp.u16 hi, q1, {step}",
             "vpsel q2, q2, q3",
             "vstrb.16 q2, [r0], #8",
+            ".if {any}",
             "cmp {radius}, #0",
             "beq 4f",
+            ".endif",
             "vldrh.u16 q6, [{at}, #-14]",
             "vabd.u16 q2, q0, q6",
             "vmov.i32 q4, #0",
@@ -102,8 +113,11 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
             "vaddt.i16 q3, q3, q6",
             "vaddt.i16 q4, q4, {two}",
             ".irp pair, 2, 4, 6, 8",
+            ".if {any}",
             "cmp {radius}, #\\pair - 1",
             "beq 3f",
+            ".endif",
+            ".if \\pair <= {most}",
             "vldrh.u16 q1, [{at}, #-16 - 2 * \\pair]",
             "vabd.u16 q5, q5, q1",
             "vldrh.u16 q2, [{at}, #-16 + 2 * \\pair]",
@@ -114,9 +128,12 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
             "vaddt.i16 q3, q3, q1",
             "vaddt.i16 q3, q3, q2",
             "vaddt.i16 q4, q4, {two}",
-            ".if \\pair < 8",
+            ".endif",
+            ".if \\pair < {most}",
+            ".if {any}",
             "cmp {radius}, #\\pair",
             "beq 3f",
+            ".endif",
             "vldrh.u16 q5, [{at}, #-18 - 2 * \\pair]",
             "vabd.u16 q1, q1, q5",
             "vldrh.u16 q6, [{at}, #-14 + 2 * \\pair]",
@@ -139,7 +156,8 @@ fn pairs(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: u
             "vstrh.16 q0, [{answers}], #16",
             "letp lr, 2b",
             count = in(reg) count, step = in(reg) u32::from(step.raw()), radius = in(reg) radius,
-            two = in(reg) 2,
+            two = in(reg) 2, any = const (RADIUS == 0) as u32,
+            most = const if RADIUS == 0 { REACH } else { RADIUS },
             at = inout(reg) room.add(REACH) => _,
             answers = inout(reg) answers.as_mut_ptr() => _, halves = in(reg) HALVES.as_ptr(),
             inout("r0") room => _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _,

@@ -9,15 +9,15 @@ use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::winners::BESIDE;
 use core::arch::asm;
 
-/// The disparities of the lanes.
-static DISPARITIES: [u8; 64] = {
-    let mut disparities = [0; 64];
+/// The complements of the lanes' disparities, the last of which is 0: the nearest disparity has the greatest.
+static COMPLEMENTS: [u8; 64] = {
+    let mut complements = [0; 64];
     let mut lane = 0;
     while lane < 64 {
-        disparities[lane] = (63 - lane) as u8;
+        complements[lane] = u8::MAX - (63 - lane as u8);
         lane += 1;
     }
-    disparities
+    complements
 };
 
 /// Windows that move along a row.
@@ -55,7 +55,7 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
 
     /// The cost and the disparity of the only pixel that was selected last.
     pub fn only(&self) -> (u8, u8) {
-        self.room.first_chunk::<RECORD>().map_or((0, 0), |&[_, cost, _, disparity]| (cost, disparity))
+        self.room.first_chunk::<RECORD>().map_or((0, 0), |&[_, cost, _, complement]| (cost, !complement))
     }
 
     /// Selects the winners of the next `count` pixels. Lanes with ones in the `mask` are not selected; for
@@ -87,7 +87,7 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
     }
 
     /// [`Self::select`] among `STRIDE` candidates: eight instructions for 16 of them, two more where there is
-    /// a mask, and seven for a pixel.
+    /// a mask, and six for a pixel, seven if there are more than 48.
     #[inline(always)]
     fn select_among<S: WindowParameters, const MASKED: bool>(
         &mut self,
@@ -95,10 +95,12 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
         mask: &[u8],
         step: usize,
     ) {
-        const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE != LANES && STRIDE <= DISPARITIES.len()) };
-        let Some(lanes) = DISPARITIES.last_chunk::<STRIDE>() else { return };
+        const { assert!(STRIDE.is_multiple_of(LANES) && STRIDE != LANES && STRIDE <= COMPLEMENTS.len()) };
+        let Some(complements) = COMPLEMENTS.last_chunk::<STRIDE>() else { return };
+        let sums = self.sums().as_mut_ptr();
         // SAFETY: [`Self::select`] asked for the lengths of what is read and written; `count` is not 0. The
-        // winner is one of the lanes, and the word from the byte before a lane is of the room.
+        // winner is one of the lanes, and the word from the byte before a lane is of the room: the first
+        // lane's stands in `before` at its complement, 256 less the number of lanes.
         unsafe {
             asm!(
                 "dls lr, {count}",
@@ -107,8 +109,11 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 "vldrb.u8 q\\v, [{sums}, #16 * \\v]",
                 ".endif",
                 ".endr",
-                "vldrb.u8 q6, [{disparities}, #{stride} - 32]",
-                "vldrb.u8 q7, [{disparities}, #{stride} - 16]",
+                ".if {groups} > 2",
+                "vldrb.u8 q5, [{complements}, #{stride} - 48]",
+                ".endif",
+                "vldrb.u8 q6, [{complements}, #{stride} - 32]",
+                "vldrb.u8 q7, [{complements}, #{stride} - 16]",
                 "2:",
                 "mov {least}, #255",
                 ".irp v, 0, 1, 2, 3",
@@ -133,23 +138,25 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 ".endif",
                 ".endif",
                 ".endr",
-                // The least of the disparities that have it.
-                "mov {nearest}, #255",
+                // The nearest of the disparities that have it.
+                "mov {nearest}, #0",
                 ".irp v, 0, 1, 2, 3",
-                ".if \\v + 2 < {groups}",
-                "vldrb.u8 q5, [{disparities}, #16 * \\v]",
+                ".if \\v + 3 < {groups}",
+                "vldrb.u8 q4, [{complements}, #16 * \\v]",
                 "vpt.i8 eq, q\\v, {least}",
-                "vminvt.u8 {nearest}, q5",
+                "vmaxvt.u8 {nearest}, q4",
+                ".elseif \\v + 3 == {groups}",
+                "vpt.i8 eq, q\\v, {least}",
+                "vmaxvt.u8 {nearest}, q5",
                 ".elseif \\v + 2 == {groups}",
                 "vpt.i8 eq, q\\v, {least}",
-                "vminvt.u8 {nearest}, q6",
+                "vmaxvt.u8 {nearest}, q6",
                 ".elseif \\v + 1 == {groups}",
                 "vpt.i8 eq, q\\v, {least}",
-                "vminvt.u8 {nearest}, q7",
+                "vmaxvt.u8 {nearest}, q7",
                 ".endif",
                 ".endr",
-                "sub {least}, {sums}, {nearest}",
-                "ldr {least}, [{least}, #{stride} - 2]",
+                "ldr {least}, [{before}, {nearest}]",
                 "bfi {least}, {nearest}, #24, #8",
                 "str {least}, [{record}], #4",
                 ".if {masked}",
@@ -158,9 +165,9 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 "le lr, 2b",
                 count = in(reg) count, enters = inout(reg) self.enters.as_ptr() => _,
                 leaves = inout(reg) self.leaves.as_ptr() => _,
-                sums = in(reg) self.room.as_mut_ptr().add(RECORD * self.at_once + 1),
+                sums = in(reg) sums, before = in(reg) sums.wrapping_sub(1 + (256 - STRIDE)),
                 mask = inout(reg) mask.as_ptr() => _, step = in(reg) step,
-                disparities = in(reg) lanes.as_ptr(),
+                complements = in(reg) complements.as_ptr(),
                 record = inout(reg) self.room.as_mut_ptr() => _,
                 least = out(reg) _, nearest = out(reg) _,
                 stride = const STRIDE, groups = const STRIDE / LANES, shift = const S::COLUMN_SHIFT,
@@ -208,11 +215,11 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 "vminv.u8 {least}, q3",
                 "vpt.i8 eq, q3, {least}",
                 "vminvt.u8 {nearest}, q4",
-                "sub {mask}, {mask}, {stride}",
-                "add {mask}, {mask}, {step}",
+                "add {mask}, {mask}, {back}",
                 "sub r4, {sums}, {nearest}",
                 "sub {sums}, {sums}, {stride}",
                 "ldr r4, [r4, #-2]",
+                "mvn {nearest}, {nearest}",
                 "bfi r4, {nearest}, #24, #8",
                 "str r4, [{record}], #4",
                 "subs {count}, {count}, #1",
@@ -220,7 +227,8 @@ impl<'a, const STRIDE: usize> Windows<'a, STRIDE> {
                 count = inout(reg) count => _, enters = inout(reg) self.enters.as_ptr() => _,
                 leaves = inout(reg) self.leaves.as_ptr() => _,
                 sums = inout(reg) self.room.as_mut_ptr().add(RECORD * self.at_once + 1) => _,
-                mask = inout(reg) mask.as_ptr() => _, step = in(reg) step, stride = in(reg) self.stride,
+                mask = inout(reg) mask.as_ptr() => _, back = in(reg) step.wrapping_sub(self.stride),
+                stride = in(reg) self.stride,
                 record = inout(reg) self.room.as_mut_ptr() => _,
                 least = out(reg) _, nearest = out(reg) _, shift = const S::COLUMN_SHIFT,
                 out("r4") _, out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, out("q4") _,

@@ -36,19 +36,6 @@ pub(in crate::matching::backend) fn answer<S: MethodParameters>(
     for (fraction, ((&below, &cost), &above)) in fractions.iter_mut().zip(sides) {
         *fraction = signed_fraction(below - cost, above - cost, S::SLANT_COST);
     }
-    flag_and_answer(winners, kept, rules, fractions, answers, flags);
-}
-
-/// The answers and flags of the columns that have a candidate, given the fractions of their winners.
-#[inline(always)]
-pub(in crate::matching::backend) fn flag_and_answer(
-    winners: &WinnerRows<'_>,
-    kept: &[u8],
-    rules: &Rules,
-    fractions: &[u8],
-    answers: &mut [Disparity],
-    flags: &mut [PixelFlags],
-) {
     let [below, costs, above, disparities] =
         [&*winners.below, &*winners.costs, &*winners.above, &*winners.disparities];
     // Two byte loops: one with all of these rows has more of them than there are registers.

@@ -7,7 +7,7 @@
 use super::notes::Note;
 use super::record::WinnerRecord;
 use super::winner::Winner;
-use crate::units::PixelFlags;
+use crate::units::{Disparity, PixelFlags};
 use core::slice;
 
 /// A type that is nothing but an integer: without padding, and valid whatever its bits are.
@@ -27,6 +27,8 @@ unsafe impl Plain for u32 {}
 unsafe impl Plain for Winner {}
 // SAFETY: a `u8` (`repr(transparent)`), any of whose values `PixelFlags::from_bits` takes.
 unsafe impl Plain for PixelFlags {}
+// SAFETY: a `u16` (`repr(transparent)`).
+unsafe impl Plain for Disparity {}
 // SAFETY: a `u8` (`repr(transparent)`).
 unsafe impl Plain for Note {}
 // SAFETY: eight `u8` (`repr(transparent)`).

@@ -73,10 +73,11 @@ impl Smooth<'_> {
     // Once, for both ways along the row.
     #[inline(never)]
     fn word(&self, word: usize, least: u32) -> u32 {
-        let first = word * BLOCKS;
-        let rows = self.above.iter().zip(self.below).zip(self.edges).skip(first).take(BLOCKS);
+        let blocks = |row| -> &[[u8; BLOCK]] { part(row, word * BLOCKS..) };
+        let above = blocks(self.above);
+        let above = part(above, ..above.len().min(BLOCKS));
         let (mut bits, mut bit) = (0, 1u32);
-        for ((above, below), edges) in rows {
+        for ((above, below), edges) in above.iter().zip(blocks(self.below)).zip(blocks(self.edges)) {
             keep_loop();
             // Both differences are of 510 at most: with so much more neither borrows from the other.
             let both = (sums(below) + MORE * 0x1_0001).wrapping_sub(sums(above));
@@ -114,10 +115,13 @@ fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
     let mut is_joined = 0;
     for (number, open) in open.iter_mut().enumerate().rev() {
         keep_loop();
-        let before = u32::from_le_bytes(*open);
-        let smooth = if is_joined != 0 { row.word(number, least).reverse_bits() } else { 0 };
-        let all = before | filled(smooth, smooth & is_joined).reverse_bits();
-        *open = all.to_le_bytes();
+        let mut all = u32::from_le_bytes(*open);
+        // Blocks that are joined to an open last one are open already.
+        if is_joined > all >> (BLOCKS - 1) {
+            let smooth = row.word(number, least).reverse_bits();
+            all |= filled(smooth, smooth & 1).reverse_bits();
+            *open = all.to_le_bytes();
+        }
         is_joined = all & 1;
     }
 }
@@ -128,31 +132,36 @@ fn filled(smooth: u32, seeds: u32) -> u32 {
     smooth & !smooth.wrapping_add(seeds) | seeds
 }
 
-/// Does something with the columns of the blocks that are open, or beside one that is: with those of a word
-/// that follow one another at once, so that a blank image takes hardly more than another one.
+/// Does something with the columns of the blocks that are open, or beside one that is: with those that follow
+/// one another at once, so that a blank image takes hardly more than another one.
 // A function behind a pointer, so that this is there once.
 #[inline(never)]
 pub(super) fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
-    let words = part(open, ..words(width)).as_chunks().0;
+    let mut words = part(open, ..words(width)).as_chunks().0;
     // Mostly none is.
     if words.iter().all(|word| *word == [0; 4]) {
         return;
     }
-    let (mut before, mut first) = (0, 0);
-    for (number, word) in words.iter().enumerate() {
-        let here = u32::from_le_bytes(*word);
-        let after = words.get(number + 1).map_or(0, |&word| u32::from_le_bytes(word));
-        let mut bits = here | here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
-        while bits != 0 {
+    let (mut before, mut is_inside, mut begin, mut first) = (0, false, 0, 0);
+    while let Some((&word, others)) = words.split_first() {
+        let here = u32::from_le_bytes(word);
+        let after = others.first().map_or(0, |&word| u32::from_le_bytes(word));
+        let bits = here | here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
+        // A bit where they begin, and where they have ended.
+        let mut edges = bits ^ (bits << 1 | u32::from(is_inside));
+        while edges != 0 {
             keep_loop();
-            let begin = bits.trailing_zeros();
-            let blocks = (bits >> begin).trailing_ones();
-            // The lowest of them carries through all that follow it.
-            bits &= bits.wrapping_add(1 << begin);
-            let column = |block: u32| ((first + block as usize) * BLOCK).min(width);
-            act(column(begin)..column(begin + blocks));
+            let column = ((first + edges.trailing_zeros() as usize) * BLOCK).min(width);
+            edges &= edges - 1;
+            if is_inside {
+                act(begin..column);
+            }
+            (is_inside, begin) = (!is_inside, column);
         }
-        (before, first) = (here, first + BLOCKS);
+        (words, before, first) = (others, here, first + BLOCKS);
+    }
+    if is_inside {
+        act(begin..width);
     }
 }
 

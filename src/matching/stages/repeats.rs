@@ -14,7 +14,7 @@
 use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
-use crate::matching::backend::loops::{fill_row, keep_loop};
+use crate::matching::backend::loops::{fill_row, keep_loop, keep_scalar_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
@@ -30,6 +30,8 @@ const EVERY: usize = 5;
 const LEAST_PERIOD: usize = 4;
 /// The fewest pixels that repeat those before them.
 const LEAST_RUN: usize = 24;
+/// How many pixels are compared with those before them at once.
+const AT_ONCE: usize = if cfg!(stereopsis_vectors) { 16 } else { 4 };
 /// Bytes of a word of blocks.
 const WORD: usize = size_of::<u32>();
 /// The flag of answers on a pattern, of four pixels.
@@ -122,37 +124,79 @@ fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, bloc
     let first = pixels.start.max(period + 1);
     let end = pixels.end.min(line.len()).max(first);
     let (before, here) = (part(line, first - period..end - period), part(line, first..end));
-    let slack = u32::from(slack);
-    let mut run = first;
-    for (x, (&pixel, &other)) in (first..).zip(here.iter().zip(before)) {
-        keep_loop();
-        // The one in the middle of the three is mostly near enough, and stands for them.
-        let (low, other) = (u32::from(pixel) + slack, u32::from(other));
-        if low.wrapping_sub(other) > 2 * slack && !is_among_three(line, x, period, slack) {
-            mark_run(run..x, least_run, period, blocks);
-            run = x + 1;
+    let (groups, rest) = here.as_chunks();
+    let mut runs = Runs { line, period, slack, least_run, begin: first, blocks };
+    let mut x = first;
+    for (pixels, others) in groups.iter().zip(before.as_chunks().0) {
+        keep_scalar_loop();
+        // Mostly those in the middle of the three stand for them.
+        if !are_near(pixels, others, slack) {
+            runs.look_at(x..x + AT_ONCE);
+        }
+        x += AT_ONCE;
+    }
+    runs.look_at(end - rest.len()..end);
+    runs.end(end);
+}
+
+/// Runs of pixels that repeat those a period before them.
+struct Runs<'a> {
+    line: &'a [u8],
+    period: usize,
+    slack: u8,
+    least_run: usize,
+    /// Where the newest one begins.
+    begin: usize,
+    blocks: &'a mut [[u8; WORD]],
+}
+
+impl Runs<'_> {
+    /// Ends a run at each pixel that does not repeat one of the three.
+    #[inline(never)]
+    fn look_at(&mut self, pixels: Range<usize>) {
+        for x in pixels {
+            keep_loop();
+            if !self.is_repeated(x) {
+                self.end(x);
+                self.begin = x + 1;
+            }
         }
     }
-    mark_run(run..end, least_run, period, blocks);
-}
 
-/// Whether the brightness of a pixel lies in the range of the three a period before it, give or take `slack`.
-#[inline(never)]
-fn is_among_three(line: &[u8], x: usize, period: usize, slack: u32) -> bool {
-    let Some((&pixel, before)) = line.get(x).zip(line.get(x.wrapping_sub(period + 1)..)) else {
-        return false;
-    };
-    let (pixel, three) = (u32::from(pixel), before.iter().take(3).map(|&other| u32::from(other)));
-    let (low, high) = three.fold((u32::MAX, 0), |(low, high), other| (other.min(low), other.max(high)));
-    pixel + slack >= low && pixel <= high + slack
-}
-
-/// Sets the bits of the blocks of a run of pixels, if it is long enough, and of the period before it.
-#[inline(always)]
-fn mark_run(run: Range<usize>, least: usize, period: usize, blocks: &mut [[u8; WORD]]) {
-    if run.len() >= least {
-        mark_blocks((run.start - period) / BLOCK..run.end.div_ceil(BLOCK), blocks);
+    /// Whether the brightness of a pixel lies in the range of the three a period before it, give or take
+    /// `slack`.
+    #[inline(always)]
+    fn is_repeated(&self, x: usize) -> bool {
+        let before = self.line.get(x.wrapping_sub(self.period + 1)..).and_then(|before| before.first_chunk());
+        let Some((&pixel, &[a, b, c])) = self.line.get(x).zip(before) else { return false };
+        let (pixel, slack) = (u32::from(pixel), u32::from(self.slack));
+        pixel + slack >= u32::from(a.min(b).min(c)) && pixel <= u32::from(a.max(b).max(c)) + slack
     }
+
+    /// Sets the bits of the blocks of the run up to a pixel, if it is long enough, and of the period before.
+    #[inline(always)]
+    fn end(&mut self, end: usize) {
+        if end - self.begin >= self.least_run {
+            mark_blocks((self.begin - self.period) / BLOCK..end.div_ceil(BLOCK), self.blocks);
+        }
+    }
+}
+
+/// Whether pixels are as bright as others, give or take `slack`.
+#[inline(always)]
+fn are_near(pixels: &[u8; AT_ONCE], others: &[u8; AT_ONCE], slack: u8) -> bool {
+    if cfg!(stereopsis_vectors) {
+        return pixels.iter().zip(others).fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= slack;
+    }
+    // In each half-word the difference, either way, and so much more that a bit is set if it is greater.
+    const EVEN: u32 = 0x00ff_00ff;
+    const GREATER: u32 = 0x0200_0200;
+    let more = GREATER - (u32::from(slack) + 1) * 0x1_0001;
+    let bits = |a: u32, b: u32| (more + a - b) | (more + b - a);
+    pixels.as_chunks().0.iter().zip(others.as_chunks().0).all(|(four, others)| {
+        let [a, b] = [four, others].map(|four| u32::from_le_bytes(*four));
+        (bits(a & EVEN, b & EVEN) | bits(a >> 8 & EVEN, b >> 8 & EVEN)) & GREATER == 0
+    })
 }
 
 /// Sets the bits of blocks.
@@ -175,16 +219,18 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
             let places = places.start.max(first)..places.end.max(first);
-            // Most places are whole blocks.
-            let flags = view_mut::<PixelFlags, u8>(part_mut(flags, places.clone()));
-            let (fours, rest) = flags.as_chunks_mut();
-            for four in fours {
-                keep_loop();
-                *four = (u32::from_le_bytes(*four) | AMBIGUOUS).to_le_bytes();
-            }
-            for flags in rest {
-                keep_loop();
-                *flags |= PixelFlags::AMBIGUOUS.bits();
+            let flags = part_mut(flags, places.clone());
+            let words = view_mut::<PixelFlags, u32>(flags);
+            if words.len() * WORD == places.len() {
+                for word in words {
+                    keep_scalar_loop();
+                    *word |= AMBIGUOUS;
+                }
+            } else {
+                for flags in flags {
+                    keep_loop();
+                    *flags = flags.union(PixelFlags::AMBIGUOUS);
+                }
             }
             fill_row(part_mut(answers, places), Disparity::NONE);
         });
@@ -200,8 +246,15 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone());
             // On a large pattern nothing was filled.
-            let (fours, rest) = view::<PixelFlags, u8>(flags).as_chunks();
-            let all = fours.iter().fold(0, |all, four| all | u32::from_le_bytes(*four)).to_le_bytes();
+            let (groups, rest) = view::<PixelFlags, u8>(flags).as_chunks::<16>();
+            let mut words = [0u32; 4];
+            for group in groups {
+                keep_scalar_loop();
+                for (word, four) in words.iter_mut().zip(group.as_chunks().0) {
+                    *word |= u32::from_le_bytes(*four);
+                }
+            }
+            let all = words.into_iter().fold(0, |all, word| all | word).to_le_bytes();
             if all.iter().chain(rest).any(|&bits| PixelFlags::from_bits(bits).contains(PixelFlags::FILLED)) {
                 for (flags, answer) in flags.iter_mut().zip(part_mut(answers, places)) {
                     keep_loop();

@@ -11,6 +11,7 @@
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
 //! * [`mod@edges`], [`mod@fattening`]: answers refused that spread.
 //! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
+//! * [`rows`]: rows filled and copied.
 //!
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
 //! bits in nine instructions, and looks for the winner in a loop of its own. Here
@@ -36,6 +37,7 @@ mod fattening;
 mod fill;
 mod fractions;
 mod left_right;
+pub(super) mod rows;
 mod sgm;
 mod sides;
 mod smooth;

@@ -2,6 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use super::rows::copy;
+use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS};
 use crate::matching::config::Checks;
 use crate::matching::memory::slices::split_mut;
@@ -39,34 +41,14 @@ pub(super) fn smooth(
     // The answers as they were, with none outside.
     let (before, more) = split_mut(room, REACH);
     let (inside, after) = split_mut(more, width);
-    before.fill(Disparity::NONE.raw());
-    after.fill(Disparity::NONE.raw());
+    fill_row(before, Disparity::NONE.raw());
+    fill_row(after, Disparity::NONE.raw());
     copy(answers, inside);
     match usize::from(radius) {
         USUAL => pairs::<USUAL>(answers, room, step, USUAL),
         radius => pairs::<0>(answers, room, step, radius.min(REACH)),
     }
     count(room, lengths, width);
-}
-
-/// Copies the answers, as many as there is place for: two instructions and the loop's own for eight.
-fn copy(answers: &[Disparity], to: &mut [u16]) {
-    let count = answers.len().min(to.len());
-    if count == 0 {
-        return;
-    }
-    // SAFETY: `count` half-words are read and written; the loop is one for so many lanes of them.
-    unsafe {
-        asm!(
-            "dlstp.16 lr, {count}",
-            "2:",
-            "vldrh.u16 q0, [{answers}], #16",
-            "vstrh.16 q0, [{to}], #16",
-            "letp lr, 2b",
-            count = in(reg) count, answers = inout(reg) answers.as_ptr() => _,
-            to = inout(reg) to.as_mut_ptr() => _, out("lr") _, out("q0") _, options(nostack),
-        );
-    }
 }
 
 /// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its

@@ -5,7 +5,7 @@
 //! * a census of eight neighbours, wide along the line.
 
 use crate::imaging::{census_wide8, gradients};
-use crate::matching::backend::loops::{keep_loop, once_without_vectors};
+use crate::matching::backend::loops::{fill_row, keep_loop, once_without_vectors};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
@@ -141,14 +141,14 @@ once_without_vectors! {
         repeat(row, first, outside);
         let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
         let end = end.min(row.len());
-        part_mut(row, end..).fill(last);
+        fill_row(part_mut(row, end..), last);
     }
 }
 
 /// Repeats the first column before the image.
 #[inline(always)]
 fn repeat(row: &mut [u8], first: u8, outside: usize) {
-    part_mut(row, ..outside).fill(first);
+    fill_row(part_mut(row, ..outside), first);
 }
 
 /// What a row's features are made with.

@@ -1,7 +1,8 @@
 //! AVX2 registers. Only the code that is compiled for AVX2, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, register};
+use super::half_words::HalfWords;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -71,6 +72,38 @@ impl Group for Wide {
             // The lesser byte of each half-word, of which one instruction finds the least.
             let halves = _mm_min_epu8(half, _mm_srli_epi16(half, 8));
             Self(_mm256_broadcastb_epi8(_mm_minpos_epu16(halves)))
+        })
+    }
+}
+
+impl HalfWords for Wide {
+    half_words! { sums _mm256_adds_epu16, differences _mm256_subs_epu16, greater _mm256_max_epu16 }
+
+    #[inline(always)]
+    fn on<const BY: usize>(self) -> Self {
+        safely!({
+            // Zeros, and then the first half.
+            let half = _mm256_permute2x128_si256(self.0, self.0, 0x08);
+            Self(match BY {
+                1 => _mm256_alignr_epi8(self.0, half, 14),
+                2 => _mm256_alignr_epi8(self.0, half, 12),
+                4 => _mm256_alignr_epi8(self.0, half, 8),
+                _ => half,
+            })
+        })
+    }
+
+    #[inline(always)]
+    fn back<const BY: usize>(self) -> Self {
+        safely!({
+            // The second half, and then zeros.
+            let half = _mm256_permute2x128_si256(self.0, self.0, 0x81);
+            Self(match BY {
+                1 => _mm256_alignr_epi8(half, self.0, 2),
+                2 => _mm256_alignr_epi8(half, self.0, 4),
+                4 => _mm256_alignr_epi8(half, self.0, 8),
+                _ => half,
+            })
         })
     }
 }

@@ -1,7 +1,8 @@
 //! AVX-512 registers. Only the code that is compiled for AVX-512, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, register};
+use super::half_words::HalfWords;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -83,6 +84,37 @@ impl Group for Widest {
             // The lesser byte of each half-word, of which one instruction finds the least.
             let halves = _mm_min_epu8(quarter, _mm_srli_epi16(quarter, 8));
             Self(_mm512_broadcastb_epi8(_mm_minpos_epu16(halves)))
+        })
+    }
+}
+
+/// The numbers of half-words, twice.
+const PLACES: &[u16; 64] = &{
+    let mut places = [0; 64];
+    let mut place = 0;
+    while place < 64 {
+        places[place] = place as u16 % 32;
+        place += 1;
+    }
+    places
+};
+
+impl HalfWords for Widest {
+    half_words! { sums _mm512_adds_epu16, differences _mm512_subs_epu16, greater _mm512_max_epu16 }
+
+    #[inline(always)]
+    fn on<const BY: usize>(self) -> Self {
+        safely!({
+            let from = _mm512_loadu_si512(PLACES.as_ptr().add(32 - BY % 32).cast());
+            Self(_mm512_maskz_permutexvar_epi16(u32::MAX << BY, from, self.0))
+        })
+    }
+
+    #[inline(always)]
+    fn back<const BY: usize>(self) -> Self {
+        safely!({
+            let from = _mm512_loadu_si512(PLACES.as_ptr().add(BY % 32).cast());
+            Self(_mm512_maskz_permutexvar_epi16(u32::MAX >> BY, from, self.0))
         })
     }
 }

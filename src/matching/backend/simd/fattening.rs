@@ -1,50 +1,77 @@
-//! Answers refused that spread, a block of pixels at a time: bounds go from pixel to pixel, and all else is
-//! done side by side, in loops that the compiler turns into vectors.
+//! Answers refused that spread, a block of pixels at a time.
+//!
+//! A bound is a minimum over the answers before a pixel, each raised by the slope for every pixel between, as
+//! far back as no edge is crossed. In a register it is made by doubling, over one pixel, two, four and so on;
+//! from one register to the next a number is carried. What is held is how far a bound is below `u16::MAX`: so
+//! the zeros that are moved in stand for none.
 
+use super::half_words::HalfWords;
 use crate::matching::backend::portable::fattening::refuse_marked;
 use crate::matching::backend::work::FatteningWork;
 use crate::matching::memory::slices::{part, part_mut};
+use crate::units::Disparity;
 
 /// Pixels of a block.
 const BLOCK: usize = 64;
-/// A bound that no answer is beyond.
-const NO_BOUND: u16 = u16::MAX;
+/// How far below `u16::MAX` a bound is that no answer is beyond.
+const NO_BOUND: u16 = 0;
 
 /// [`Isa::refuse_fattening`](crate::matching::backend::Isa::refuse_fattening).
 #[inline(always)]
-pub(super) fn refuse(mut work: FatteningWork<'_>) {
+pub(super) fn refuse<H: HalfWords>(mut work: FatteningWork<'_>) {
     let blocks = work.answers.len().div_ceil(BLOCK);
     // The bounds that answers on the left set, and those that answers on the right set. Each waits for its
     // own step before, but not for the other's.
-    let (mut right, mut left) = (u32::from(NO_BOUND), u32::from(NO_BOUND));
+    let (mut right, mut left) = (NO_BOUND, NO_BOUND);
     for block in 0..blocks {
         let opposite = blocks - 1 - block;
         let (ahead, back) = (Block::new(&work, block), Block::new(&work, opposite));
-        let (mut from_left, mut from_right) = ([NO_BOUND; BLOCK], [NO_BOUND; BLOCK]);
-        let to_right = from_left.iter_mut().zip(ahead.steps.iter().zip(&ahead.bounds));
-        let to_left = from_right.iter_mut().zip(back.steps.iter().zip(&back.bounds_of_no_edge));
-        for ((from_left, (&step, &bound)), (from_right, (&step_back, &bound_back))) in
-            to_right.zip(to_left.rev())
-        {
-            *from_left = pass_on(&mut right, step, bound);
-            *from_right = pass_on(&mut left, step_back, bound_back);
-        }
+        let mut from_left = [right; BLOCK + 1];
+        pass_on::<H, true>(&ahead.steps, &ahead.bounds, right, part_mut(&mut from_left, 1..));
+        let mut from_right = [left; BLOCK + 1];
+        pass_on::<H, false>(&back.steps, &back.bounds_of_no_edge(), left, part_mut(&mut from_right, ..BLOCK));
+        (right, left) = (from_left[BLOCK], from_right[0]);
         // What comes from the left ends before an edge, what comes from the right behind it.
         for (bound, edge) in from_left.iter_mut().zip(&ahead.edges) {
-            *bound |= edge;
+            *bound &= !edge;
         }
-        mark(&mut work, block, &from_left);
-        mark(&mut work, opposite, &from_right);
+        mark(&mut work, block, part(&from_left, ..BLOCK));
+        mark(&mut work, opposite, part(&from_right, 1..));
     }
     refuse_marked(work);
 }
 
-/// Moves a bound over a pixel that sets a bound of its own, and returns what it was.
+/// Moves a bound over the pixels of a block, given how much it grows over each and which bound each sets, and
+/// puts down what it is behind each of them.
 #[inline(always)]
-fn pass_on(bound: &mut u32, step: u16, own: u16) -> u16 {
-    let before = *bound as u16;
-    *bound = (*bound + u32::from(step)).min(u32::from(own));
-    before
+fn pass_on<H: HalfWords, const TO_RIGHT: bool>(
+    steps: &[u16; BLOCK],
+    bounds: &[u16; BLOCK],
+    mut bound: u16,
+    out: &mut [u16],
+) {
+    let registers = BLOCK / H::COUNT;
+    for register in 0..registers {
+        let at = H::COUNT * if TO_RIGHT { register } else { registers - 1 - register };
+        let [mut steps, mut bounds] =
+            [steps, bounds].map(|numbers| H::of_half_words(part(numbers, at..at + H::COUNT)));
+        macro_rules! double {
+            ($($by:literal)*) => {$(
+                if $by < H::COUNT {
+                    let [grown, before] = [steps, bounds].map(
+                        #[inline(always)]
+                        |numbers| if TO_RIGHT { numbers.on::<$by>() } else { numbers.back::<$by>() },
+                    );
+                    bounds = bounds.greater(before.differences(steps));
+                    steps = steps.sums(grown);
+                }
+            )*};
+        }
+        double!(1 2 4 8 16);
+        let out = part_mut(out, at..at + H::COUNT);
+        bounds.greater(H::of_half_words(&[bound; BLOCK]).differences(steps)).put_half_words(out);
+        bound = if TO_RIGHT { out.last() } else { out.first() }.copied().unwrap_or(NO_BOUND);
+    }
 }
 
 /// What bounds are made of, of the pixels of a block; behind the row nothing is.
@@ -53,38 +80,46 @@ struct Block {
     edges: [u16; BLOCK],
     /// How much a bound grows to the next pixel: at an edge beyond all.
     steps: [u16; BLOCK],
-    /// The bound that each pixel's answer sets, and the one that it sets if it is no edge.
+    /// The bound that each pixel's answer sets.
     bounds: [u16; BLOCK],
-    bounds_of_no_edge: [u16; BLOCK],
 }
 
 impl Block {
     #[inline(always)]
     fn new(work: &FatteningWork<'_>, block: usize) -> Self {
-        let mut pixels = Self {
-            edges: [0; BLOCK],
-            steps: [work.slope.raw(); BLOCK],
-            bounds: [NO_BOUND; BLOCK],
-            bounds_of_no_edge: [NO_BOUND; BLOCK],
-        };
-        let row = part(work.answers, block * BLOCK..).iter().zip(part(work.edges, block * BLOCK..));
-        for (i, (answer, edges)) in (0..BLOCK).zip(row) {
-            let edge = 0u16.wrapping_sub(u16::from(edges & work.row != 0));
-            let bound = answer.raw().saturating_add(FatteningWork::TOLERANCE);
-            pixels.edges[i] = edge;
-            pixels.steps[i] |= edge;
-            pixels.bounds[i] = bound;
-            pixels.bounds_of_no_edge[i] = bound | edge;
+        let answers = in_block(work.answers, block, Disparity::NONE);
+        let edges = in_block(work.edges, block, 0);
+        let edges = edges.map(|edges| 0u16.wrapping_sub(u16::from(edges & work.row != 0)));
+        Self {
+            edges,
+            steps: edges.map(|edge| edge | work.slope.raw()),
+            bounds: answers.map(|answer| (!answer.raw()).saturating_sub(FatteningWork::TOLERANCE)),
         }
-        pixels
     }
+
+    /// The bounds of pixels that are no edge.
+    #[inline(always)]
+    fn bounds_of_no_edge(&self) -> [u16; BLOCK] {
+        core::array::from_fn(|i| self.bounds[i] & !self.edges[i])
+    }
+}
+
+/// What a row has in a block; behind its end `none`.
+#[inline(always)]
+fn in_block<T: Copy>(row: &[T], block: usize, none: T) -> [T; BLOCK] {
+    let row = part(row, block * BLOCK..);
+    row.first_chunk().copied().unwrap_or_else(|| {
+        let mut all = [none; BLOCK];
+        all.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+        all
+    })
 }
 
 /// Marks the answers of a block that are beyond their bounds.
 #[inline(always)]
-fn mark(work: &mut FatteningWork<'_>, block: usize, bounds: &[u16; BLOCK]) {
+fn mark(work: &mut FatteningWork<'_>, block: usize, bounds: &[u16]) {
     let row = part_mut(work.edges, block * BLOCK..).iter_mut().zip(part(work.answers, block * BLOCK..));
     for ((edges, answer), &bound) in row.zip(bounds) {
-        *edges |= if bound < answer.raw() { FatteningWork::REFUSED } else { 0 };
+        *edges |= if !bound < answer.raw() { FatteningWork::REFUSED } else { 0 };
     }
 }

@@ -1,6 +1,7 @@
 //! The dense path in the vectors of 64-bit processors and of WebAssembly.
 //!
-//! * `sse2`, `avx2`, `avx512`, `neon`, `simd128`: registers, with what they have alike from `registers`.
+//! * `sse2`, `avx2`, `avx512`, `neon`, `simd128`: registers, with what they have alike from `registers`;
+//!   `half_words`: numbers of two bytes in them.
 //! * `windows`, `columns`: sums over windows; `sgm`: costs along paths.
 //! * `smooth`, `edges`, `fattening`, `fill`: the filters of answers, pixels side by side.
 //! * `x86`: code compiled for AVX2 and for AVX-512, chosen when the processor has it.
@@ -9,6 +10,7 @@ mod columns;
 mod edges;
 mod fattening;
 mod fill;
+mod half_words;
 mod row_codes;
 mod sgm;
 mod smooth;
@@ -220,13 +222,18 @@ impl Isa for Backend {
     }
 
     fn refuse_fattening(self, work: FatteningWork<'_>) {
-        if self == Self::Planes {
-            return plain::Backend.refuse_fattening(work);
+        match self {
+            Self::Planes => plain::Backend.refuse_fattening(work),
+            Self::Lanes => fattening::refuse::<Vector>(work),
+            Self::Avx2(avx2) => avx2.run(
+                #[inline(always)]
+                || fattening::refuse::<Wide>(work),
+            ),
+            Self::Avx512(avx512) => avx512.run(
+                #[inline(always)]
+                || fattening::refuse::<Widest>(work),
+            ),
         }
-        self.in_vectors(
-            #[inline(always)]
-            || fattening::refuse(work),
-        );
     }
 
     fn fill(self, work: FillWork<'_>) {

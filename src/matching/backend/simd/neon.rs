@@ -1,6 +1,7 @@
 //! NEON registers, which every 64-bit Arm processor has.
 #![allow(unsafe_code)]
 
+use super::half_words::HalfWords;
 use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::aarch64::*;
@@ -59,6 +60,44 @@ impl Group for Vector {
     #[inline(always)]
     fn least(self) -> Self {
         safely!(Self(vdupq_n_u8(vminvq_u8(self.0))))
+    }
+}
+
+impl HalfWords for Vector {
+    #[inline(always)]
+    fn sums(self, other: Self) -> Self {
+        safely!(Self(vreinterpretq_u8_u16(vqaddq_u16(
+            vreinterpretq_u16_u8(self.0),
+            vreinterpretq_u16_u8(other.0)
+        ))))
+    }
+
+    #[inline(always)]
+    fn differences(self, other: Self) -> Self {
+        safely!(Self(vreinterpretq_u8_u16(vqsubq_u16(
+            vreinterpretq_u16_u8(self.0),
+            vreinterpretq_u16_u8(other.0)
+        ))))
+    }
+
+    #[inline(always)]
+    fn on<const BY: usize>(self) -> Self {
+        let none = Self::splat(0).0;
+        safely!(Self(match BY {
+            1 => vextq_u8(none, self.0, 14),
+            2 => vextq_u8(none, self.0, 12),
+            _ => vextq_u8(none, self.0, 8),
+        }))
+    }
+
+    #[inline(always)]
+    fn back<const BY: usize>(self) -> Self {
+        let none = Self::splat(0).0;
+        safely!(Self(match BY {
+            1 => vextq_u8(self.0, none, 2),
+            2 => vextq_u8(self.0, none, 4),
+            _ => vextq_u8(self.0, none, 8),
+        }))
     }
 }
 

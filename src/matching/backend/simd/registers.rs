@@ -92,6 +92,19 @@ macro_rules! register {
 }
 pub(super) use register;
 
+/// Items of an `impl HalfWords`, by the operation that they are.
+#[cfg(not(target_arch = "aarch64"))]
+macro_rules! half_words {
+    ($($operation:ident $instruction:ident),* $(,)?) => {$(
+        #[inline(always)]
+        fn $operation(self, other: Self) -> Self {
+            safely!(Self($instruction(self.0, other.0)))
+        }
+    )*};
+}
+#[cfg(not(target_arch = "aarch64"))]
+pub(super) use half_words;
+
 /// Items of an `impl Group` for what x86-64 has no instruction for, by the one that shifts half-words to the
 /// right.
 #[cfg(target_arch = "x86_64")]

@@ -1,7 +1,8 @@
 //! SIMD128 registers of WebAssembly: a module that has them is refused whole where they are not known.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use super::half_words::HalfWords;
+use super::registers::{AROUND, BITS_APART_OF_FOUR, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::wasm32::*;
 
@@ -78,6 +79,30 @@ impl Group for Vector {
         let two = u8x16_min(four, u16x8_shuffle::<1, 0, 3, 2, 5, 4, 7, 6>(four, four));
         let one = u8x16_min(two, u16x8_shr(two, 8));
         Self(u8x16_shuffle::<0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0>(one, one))
+    }
+}
+
+impl HalfWords for Vector {
+    half_words! { sums u16x8_add_sat, differences u16x8_sub_sat, greater u16x8_max }
+
+    #[inline(always)]
+    fn on<const BY: usize>(self) -> Self {
+        let none = Self::splat(0).0;
+        Self(match BY {
+            1 => u16x8_shuffle::<7, 8, 9, 10, 11, 12, 13, 14>(none, self.0),
+            2 => u16x8_shuffle::<6, 7, 8, 9, 10, 11, 12, 13>(none, self.0),
+            _ => u16x8_shuffle::<4, 5, 6, 7, 8, 9, 10, 11>(none, self.0),
+        })
+    }
+
+    #[inline(always)]
+    fn back<const BY: usize>(self) -> Self {
+        let none = Self::splat(0).0;
+        Self(match BY {
+            1 => u16x8_shuffle::<1, 2, 3, 4, 5, 6, 7, 8>(self.0, none),
+            2 => u16x8_shuffle::<2, 3, 4, 5, 6, 7, 8, 9>(self.0, none),
+            _ => u16x8_shuffle::<4, 5, 6, 7, 8, 9, 10, 11>(self.0, none),
+        })
     }
 }
 

@@ -1,7 +1,8 @@
 //! SSE2 registers, which every x86-64 processor has.
 #![allow(unsafe_code)]
 
-use super::registers::{AROUND, by_half_words, register};
+use super::half_words::HalfWords;
+use super::registers::{AROUND, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -82,6 +83,28 @@ impl Group for Vector {
             let one = _mm_unpacklo_epi8(one, one);
             Self(_mm_shuffle_epi32(_mm_shufflelo_epi16(one, 0), 0))
         })
+    }
+}
+
+impl HalfWords for Vector {
+    half_words! { sums _mm_adds_epu16, differences _mm_subs_epu16 }
+
+    #[inline(always)]
+    fn on<const BY: usize>(self) -> Self {
+        safely!(Self(match BY {
+            1 => _mm_slli_si128(self.0, 2),
+            2 => _mm_slli_si128(self.0, 4),
+            _ => _mm_slli_si128(self.0, 8),
+        }))
+    }
+
+    #[inline(always)]
+    fn back<const BY: usize>(self) -> Self {
+        safely!(Self(match BY {
+            1 => _mm_srli_si128(self.0, 2),
+            2 => _mm_srli_si128(self.0, 4),
+            _ => _mm_srli_si128(self.0, 8),
+        }))
     }
 }
 

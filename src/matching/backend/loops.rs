@@ -1,8 +1,7 @@
 //! Loops that the compiler leaves as they are written, and functions that it compiles once.
 
-use crate::matching::memory::views::Plain;
-#[cfg(stereopsis_vectors)]
-use crate::matching::memory::views::{view, view_mut};
+/// Whether this is a microcontroller with vectors, of which the compiler makes use.
+pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
 
 /// In the body of a loop: on 32-bit cores the loop is neither unrolled nor turned into vectors. Where a row's
 /// work is little, that would take more flash than it saves instructions.
@@ -18,18 +17,15 @@ pub(in crate::matching) fn keep_loop() {
 /// In the body of a loop: [`keep_loop`] on cores without vectors.
 #[inline(always)]
 pub(in crate::matching) fn keep_scalar_loop() {
-    #[cfg(not(stereopsis_vectors))]
-    keep_loop();
+    if !HAS_VECTORS {
+        keep_loop();
+    }
 }
 
 /// Fills a row, 16 numbers at a time: on 32-bit cores in a fraction of the instructions of the compiler's own
 /// routine.
 #[inline(always)]
-pub(in crate::matching) fn fill_row<T: Plain>(row: &mut [T], number: T) {
-    #[cfg(stereopsis_vectors)]
-    if let Some(&two) = view::<T, u8>(&[number; 2]).first_chunk() {
-        return super::mve::rows::fill(view_mut(row), two);
-    }
+pub(in crate::matching) fn fill_row<T: Copy>(row: &mut [T], number: T) {
     let (groups, rest) = row.as_chunks_mut::<16>();
     for group in groups {
         keep_loop();

@@ -14,7 +14,8 @@
 use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
-use crate::matching::backend::loops::{fill_row, keep_loop, keep_scalar_loop};
+use crate::matching::backend::Isa;
+use crate::matching::backend::loops::{HAS_VECTORS, keep_loop, keep_scalar_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
@@ -31,7 +32,7 @@ const LEAST_PERIOD: usize = 4;
 /// The fewest pixels that repeat those before them.
 const LEAST_RUN: usize = 24;
 /// How many pixels are compared with those before them at once.
-const AT_ONCE: usize = if cfg!(stereopsis_vectors) { 16 } else { 4 };
+const AT_ONCE: usize = if HAS_VECTORS { 16 } else { 4 };
 /// Bytes of a word of blocks.
 const WORD: usize = size_of::<u32>();
 /// The flag of answers on a pattern, of four pixels.
@@ -185,7 +186,7 @@ impl Runs<'_> {
 /// Whether pixels are as bright as others, give or take `slack`.
 #[inline(always)]
 fn are_near(pixels: &[u8; AT_ONCE], others: &[u8; AT_ONCE], slack: u8) -> bool {
-    if cfg!(stereopsis_vectors) {
+    if HAS_VECTORS {
         return pixels.iter().zip(others).fold(0, |most, (a, b)| most.max(a.abs_diff(*b))) <= slack;
     }
     // In each half-word the difference, either way, and so much more that a bit is set if it is greater.
@@ -214,7 +215,7 @@ fn mark_blocks(of: Range<usize>, blocks: &mut [[u8; WORD]]) {
 #[inline(never)]
 pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) {
-        let first = usize::from(frame.config.min_disparity).min(frame.width);
+        let (first, backend) = (usize::from(frame.config.min_disparity).min(frame.width), frame.backend);
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
@@ -232,7 +233,7 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
                     *flags = flags.union(PixelFlags::AMBIGUOUS);
                 }
             }
-            fill_row(part_mut(answers, places), Disparity::NONE);
+            backend.fill_row(part_mut(answers, places), Disparity::NONE);
         });
     }
 }

@@ -1,12 +1,21 @@
 //! Rows filled and copied, two instructions and the loop's own for a vector.
 #![allow(unsafe_code)]
 
+use crate::matching::memory::views::{Plain, view, view_mut};
 use crate::units::Disparity;
 use core::arch::asm;
 
+/// Fills a row with a number of a byte or two.
+#[inline(always)]
+pub(super) fn fill<T: Plain>(row: &mut [T], number: T) {
+    if let Some(&two) = view::<T, u8>(&[number; 2]).first_chunk() {
+        fill_with(view_mut(row), two);
+    }
+}
+
 /// Fills a row with two bytes in turns.
 #[inline(never)]
-pub(in crate::matching::backend) fn fill(row: &mut [u8], two: [u8; 2]) {
+fn fill_with(row: &mut [u8], two: [u8; 2]) {
     // SAFETY: as many bytes are written as there are: the loop is one for so many lanes of them.
     unsafe {
         asm!(

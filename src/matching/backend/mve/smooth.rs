@@ -2,8 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
-use super::rows::copy;
-use crate::matching::backend::loops::fill_row;
+use super::rows::{copy, fill};
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS};
 use crate::matching::config::Checks;
 use crate::matching::memory::slices::split_mut;
@@ -41,8 +40,8 @@ pub(super) fn smooth(
     // The answers as they were, with none outside.
     let (before, more) = split_mut(room, REACH);
     let (inside, after) = split_mut(more, width);
-    fill_row(before, Disparity::NONE.raw());
-    fill_row(after, Disparity::NONE.raw());
+    fill(before, Disparity::NONE.raw());
+    fill(after, Disparity::NONE.raw());
     copy(answers, inside);
     match usize::from(radius) {
         USUAL => pairs::<USUAL>(answers, room, step, USUAL),
@@ -54,8 +53,8 @@ pub(super) fn smooth(
 /// Averages the answers, which `room` holds with [`REACH`] before and after; leaves in the `room`, from its
 /// beginning, a byte for each: all ones where a surface begins.
 ///
-/// For eight answers 15 instructions and 12 for each pair; two less for each where the `RADIUS` is known, which is 0
-/// where it is not.
+/// For eight answers 15 instructions and 12 for each pair; two less for each where the `RADIUS` is known,
+/// which is 0 where it is not.
 #[inline(never)]
 fn pairs<const RADIUS: usize>(answers: &mut [Disparity], room: &mut [u16], step: Disparity, radius: usize) {
     const { assert!(RADIUS <= REACH) };

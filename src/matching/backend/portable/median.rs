@@ -1,6 +1,6 @@
 //! The median of 3 x 3 answers.
 
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{HAS_VECTORS, keep_loop};
 use crate::units::Disparity;
 
 /// No answer, as a number.
@@ -59,7 +59,7 @@ fn middle_of_nine<T: Copy>(nine: [[T; 3]; 3], order: impl Fn(T, T) -> (T, T)) ->
 }
 
 /// Pixels worked on at a time.
-const LANES: usize = if cfg!(stereopsis_vectors) { 8 } else { 16 };
+const LANES: usize = if HAS_VECTORS { 8 } else { 16 };
 
 /// The medians of a row, pixels side by side.
 #[inline(always)]

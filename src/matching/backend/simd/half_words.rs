@@ -1,6 +1,7 @@
 //! Half-words side by side in the registers that [`Group`] has bytes in.
 
 use crate::matching::backend::portable::group::Group;
+use crate::matching::backend::portable::words::Word;
 use crate::matching::memory::views::{view, view_mut};
 
 /// Half-words in a register.
@@ -37,8 +38,7 @@ pub(super) trait HalfWords: Group {
 }
 
 /// Two half-words of a word.
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
-impl HalfWords for super::Vector {
+impl HalfWords for Word {
     #[inline(always)]
     fn sums(self, other: Self) -> Self {
         of_each(self, other, u16::saturating_add)
@@ -61,12 +61,11 @@ impl HalfWords for super::Vector {
 }
 
 /// A number for each pair of half-words of two words.
-#[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64", target_arch = "wasm32")))]
 #[inline(always)]
-fn of_each(a: super::Vector, b: super::Vector, number: impl Fn(u16, u16) -> u16) -> super::Vector {
+fn of_each(a: Word, b: Word, number: impl Fn(u16, u16) -> u16) -> Word {
     let [a, b] = [a.cell(), b.cell()];
     let at = |shift: u32| u32::from(number((a >> shift) as u16, (b >> shift) as u16)) << shift;
-    super::Vector::of(at(0) | at(16))
+    Word::of(at(0) | at(16))
 }
 
 #[cfg(test)]
@@ -114,6 +113,7 @@ mod tests {
 
     #[test]
     fn half_words_of_every_register_are_what_they_are_one_by_one() {
+        check::<Word>();
         check::<super::super::Vector>();
         if let Some(avx2) = super::super::Avx2::detect() {
             avx2.run(check::<super::super::Wide>);

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::aarch64::*;
 
@@ -63,22 +63,20 @@ impl Group for Vector {
     }
 }
 
-impl HalfWords for Vector {
-    #[inline(always)]
-    fn sums(self, other: Self) -> Self {
-        safely!(Self(vreinterpretq_u8_u16(vqaddq_u16(
-            vreinterpretq_u16_u8(self.0),
-            vreinterpretq_u16_u8(other.0)
-        ))))
-    }
+/// An instruction on half-words, of bytes.
+macro_rules! of_half_words {
+    ($($name:ident $instruction:ident),*) => {$(
+        #[inline(always)]
+        fn $name(a: uint8x16_t, b: uint8x16_t) -> uint8x16_t {
+            safely!(vreinterpretq_u8_u16($instruction(vreinterpretq_u16_u8(a), vreinterpretq_u16_u8(b))))
+        }
+    )*};
+}
 
-    #[inline(always)]
-    fn differences(self, other: Self) -> Self {
-        safely!(Self(vreinterpretq_u8_u16(vqsubq_u16(
-            vreinterpretq_u16_u8(self.0),
-            vreinterpretq_u16_u8(other.0)
-        ))))
-    }
+of_half_words! { add vqaddq_u16, subtract vqsubq_u16, max vmaxq_u16 }
+
+impl HalfWords for Vector {
+    half_words! { sums add, differences subtract, greater max }
 
     #[inline(always)]
     fn on<const BY: usize>(self) -> Self {

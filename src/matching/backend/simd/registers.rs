@@ -93,7 +93,6 @@ macro_rules! register {
 pub(super) use register;
 
 /// Items of an `impl HalfWords`, by the operation that they are.
-#[cfg(not(target_arch = "aarch64"))]
 macro_rules! half_words {
     ($($operation:ident $instruction:ident),* $(,)?) => {$(
         #[inline(always)]
@@ -102,7 +101,6 @@ macro_rules! half_words {
         }
     )*};
 }
-#[cfg(not(target_arch = "aarch64"))]
 pub(super) use half_words;
 
 /// Items of an `impl Group` for what x86-64 has no instruction for, by the one that shifts half-words to the

@@ -1,6 +1,7 @@
 //! What a pixel's cost compares: the census in bytes, 16 pixels at a time, gradients in half-words.
 #![allow(unsafe_code)]
 
+use super::super::rows::fill;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
@@ -15,6 +16,11 @@ const NEAR: usize = 3 * REACH;
 pub(super) struct HeliumRows;
 
 impl FeatureRows for HeliumRows {
+    #[inline(always)]
+    fn fill(row: &mut [u8], number: u8) {
+        fill(row, number);
+    }
+
     /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
     /// [`census_wide8`](crate::imaging::census_wide8).
     #[inline(always)]

@@ -79,14 +79,14 @@ pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
         (&mut *census, first_census),
         (&mut *brightness, first_brightness),
     ] {
-        go_on(row, first, outside, outside + width);
+        go_on::<R>(row, first, outside, outside + width);
     }
     if S::BETWEEN_PIXELS {
         R::range(along, least, greatest);
         let [first, next] = first_along;
         let range = R::between(first, first, if width > 1 { next } else { first });
-        repeat(least, range.0, outside);
-        repeat(greatest, range.1, outside);
+        R::fill(part_mut(least, ..outside), range.0);
+        R::fill(part_mut(greatest, ..outside), range.1);
     }
     Some(Features { left: of_left, right: of_right, count })
 }
@@ -137,18 +137,12 @@ once_without_vectors! {
     }
 
     /// Repeats the first column before the image, and behind it what stands in its last one, before `end`.
-    fn go_on(row: &mut [u8], first: u8, outside: usize, end: usize) {
-        repeat(row, first, outside);
+    fn go_on<R: FeatureRows>(row: &mut [u8], first: u8, outside: usize, end: usize) {
+        R::fill(part_mut(row, ..outside), first);
         let last = row.get(end.wrapping_sub(1)).copied().unwrap_or(0);
         let end = end.min(row.len());
-        fill_row(part_mut(row, end..), last);
+        R::fill(part_mut(row, end..), last);
     }
-}
-
-/// Repeats the first column before the image.
-#[inline(always)]
-fn repeat(row: &mut [u8], first: u8, outside: usize) {
-    fill_row(part_mut(row, ..outside), first);
 }
 
 /// What a row's features are made with.
@@ -161,6 +155,11 @@ pub(in crate::matching::backend) trait FeatureRows {
     /// The least and the greatest of each number and those halfway to its neighbours, rounded down, of all
     /// but the two at the ends.
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]);
+    /// Fills a row with a number.
+    #[inline(always)]
+    fn fill(row: &mut [u8], number: u8) {
+        fill_row(row, number);
+    }
     /// The range of one number.
     fn between(before: u8, here: u8, next: u8) -> (u8, u8);
 }

@@ -63,7 +63,7 @@ fn bad_ranges() {
     let narrow =
         bench.put("narrow.png", &encode(&GrayImage::new(15, 8), ImageFormat::Png)).display().to_string();
     let arguments = bench.arguments(&[("--left", &narrow), ("--right", &narrow), ("--disparities", "16")]);
-    bench.refused(&arguments, "15 pixels wide");
+    bench.refused(&arguments, "15 px wide");
 }
 
 #[test]

@@ -62,12 +62,12 @@ pub fn config(range: &RangeArgs, options: &MethodArgs, width: u16, height: u16) 
     if width < Config::FEWEST_DISPARITIES {
         let least = Config::FEWEST_DISPARITIES;
         return Err(Failure::new(format!(
-            "--left: the images are {width} pixels wide; at least {least} are needed"
+            "--left: the images are {width} px wide; at least {least} are needed"
         )));
     }
     if disparities > width {
         return Err(Failure::new(format!(
-            "--disparities {disparities}: the images are {width} pixels wide; give {} to {width}",
+            "--disparities {disparities}: the images are {width} px wide; give {} to {width}",
             Config::FEWEST_DISPARITIES
         )));
     }

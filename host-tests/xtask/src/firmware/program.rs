@@ -181,11 +181,11 @@ impl Program {
         let least = Config::FEWEST_DISPARITIES;
         if width < least {
             return Err(Failure::new(format!(
-                "--left: the images are {width} pixels wide; at least {least} are needed"
+                "--left: the images are {width} px wide; at least {least} are needed"
             )));
         }
         if disparities > width {
-            let asked = format!("--disparities {disparities}: the images are {width} pixels wide");
+            let asked = format!("--disparities {disparities}: the images are {width} px wide");
             return Err(Failure::new(format!("{asked}; give {least} to {width}")));
         }
         // The two cameras' five lines, and some counters.

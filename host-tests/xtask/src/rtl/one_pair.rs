@@ -62,13 +62,13 @@ impl OnePair<'_> {
         let (width, height, disparities) = (pictures.width, pictures.height, self.disparities);
         if !(LEAST_WIDTH..=MOST_WIDTH).contains(&width) {
             return Err(Failure::new(format!(
-                "--left: the images are {width} pixels wide; the block takes {LEAST_WIDTH} to {MOST_WIDTH}"
+                "--left: the images are {width} px wide; the block takes {LEAST_WIDTH} to {MOST_WIDTH}"
             )));
         }
         let least = self.min_disparity;
         if disparities + least > width {
             let asked = format!("--min-disparity {least} and --disparities {disparities}");
-            return Err(Failure::new(format!("{asked}: the images are {width} pixels wide")));
+            return Err(Failure::new(format!("{asked}: the images are {width} px wide")));
         }
         let room = disparities.next_multiple_of(16);
         let parallel = self.parallel.unwrap_or(room);

@@ -9,13 +9,13 @@ use core::arch::asm;
 #[inline(always)]
 pub(super) fn fill<T: Plain>(row: &mut [T], number: T) {
     if let Some(&two) = view::<T, u8>(&[number; 2]).first_chunk() {
-        fill_with(view_mut(row), two);
+        write_all(view_mut(row), two);
     }
 }
 
 /// Fills a row with two bytes in turns.
 #[inline(never)]
-fn fill_with(row: &mut [u8], two: [u8; 2]) {
+fn write_all(row: &mut [u8], two: [u8; 2]) {
     // SAFETY: as many bytes are written as there are: the loop is one for so many lanes of them.
     unsafe {
         asm!(

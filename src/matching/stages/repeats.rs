@@ -290,6 +290,32 @@ mod tests {
     }
 
     #[test]
+    fn a_pixel_that_differs_by_more_than_the_slack_ends_a_run() {
+        let marked_with = |pixel: u8| {
+            let mut squares: [u8; 80] = core::array::from_fn(|x| if x / 6 % 2 == 1 { 180 } else { 60 });
+            squares[38] = pixel;
+            marked(&squares, 12)
+        };
+        // Three eighths of an edge's 16 are 6.
+        assert_eq!([54, 66].map(marked_with), [0x000f_fffe; 2]);
+        // From the second rise to the pixel there are 20, too few. Behind it the pattern goes on.
+        assert_eq!([53, 67].map(marked_with), [0x000f_ffc0; 2]);
+    }
+
+    #[test]
+    fn pixels_are_near_others_if_each_of_them_is() {
+        for (a, b) in (0..=255u8).flat_map(|a| (0..=255u8).map(move |b| (a, b))) {
+            for (slack, at) in [6, 9, 18].into_iter().zip([0, 1, AT_ONCE - 1]) {
+                for (around, other) in [(0, 0), (slack, 0), (255 - slack, 255)] {
+                    let (mut pixels, mut others) = ([around; AT_ONCE], [other; AT_ONCE]);
+                    (pixels[at], others[at]) = (a, b);
+                    assert_eq!(are_near(&pixels, &others, slack), a.abs_diff(b) <= slack, "{a} {b} {slack}");
+                }
+            }
+        }
+    }
+
+    #[test]
     fn what_changes_from_period_to_period_does_not_repeat() {
         let stairs: [u8; 80] =
             core::array::from_fn(|x| (x / 12 * 20) as u8 + if x / 6 % 2 == 1 { 60 } else { 0 });

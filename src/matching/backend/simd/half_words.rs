@@ -4,8 +4,9 @@ use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::portable::words::Word;
 use crate::matching::memory::views::{view, view_mut};
 
-/// Half-words in a register.
+/// What is done to all half-words of a register at once.
 pub(super) trait HalfWords: Group {
+    /// How many half-words a register has.
     const COUNT: usize = Self::LANES / size_of::<u16>();
 
     /// The sums, `u16::MAX` where they would be more.

@@ -94,12 +94,15 @@ impl Rows {
     pub fn warning(&self) -> Option<String> {
         let is_off = self.health != "good" && self.error_px - ONE_SIDED_95 * self.sigma_px > 0.25;
         let turned = match self.pitch_deg {
-            Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees,"),
-            None => format!("the right image stands {:+.2} px lower than the left one:", self.lower_px),
+            Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees"),
+            None => {
+                let side = if self.lower_px < 0.0 { "higher" } else { "lower" };
+                format!("the right image stands {:.2} px {side} than the left one", self.lower_px.abs())
+            }
         };
         is_off.then(|| {
             format!(
-                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned} \
+                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned}, \
                  roll {:+.2} degrees; calibrate anew or rectify",
                 self.error_px, self.sigma_px, self.roll_deg
             )

@@ -1,10 +1,11 @@
 //! The pipeline held to its naive twin: every disparity, flag, deviation and confidence, to the bit, for
-//! every kernel.
+//! every kernel; images through a remap.
 
 use crate::scene::SceneCamera;
 use crate::twin::{self, Answers, match_pair};
 use image::GrayImage;
 use stereopsis::camera::StereoSource;
+use stereopsis::imaging::{Remap, RemapError, RemapTable};
 use stereopsis::matching::{Block, Config, Fast, Kernel, Method, Sgm, SgmEdge, SgmLean};
 use stereopsis::pipeline::{Pipeline, PipelineError};
 
@@ -113,4 +114,35 @@ pub fn compare_with<S: Twin, const W: usize, const D: usize>(
         }
     }
     Ok(())
+}
+
+/// The whole image through a remap that holds `N` lines, and which pixels are valid (1 or 0).
+pub fn remapped<const W: usize, const N: usize, const SLOTS: usize>(
+    table: &RemapTable<SLOTS>,
+    raw: &GrayImage,
+) -> Result<(GrayImage, Vec<u8>), RemapError> {
+    let mut remap = Box::new(Remap::<W, N, SLOTS>::new(table.clone())?);
+    let width = usize::from(table.size().width);
+    let (mut out, mut valid) = (GrayImage::new(width as u32, table.size().height.into()), Vec::new());
+    // Twice: the second frame begins anew.
+    for _ in 0..2 {
+        valid.clear();
+        let mut lines = raw.chunks_exact(raw.width() as usize);
+        remap.begin();
+        for (row, out) in (0..).zip(out.chunks_exact_mut(width)) {
+            assert_eq!(remap.next_row(), row);
+            // At any place in a word.
+            let begin = usize::from(row % 4);
+            let mut mask = vec![9; begin + width];
+            while remap.wants_line() {
+                remap.next_line().copy_from_slice(lines.next().expect("it wants no more than there are"));
+                remap.accept();
+            }
+            assert_eq!(remap.row(out, &mut mask[begin..])?, row);
+            valid.extend_from_slice(&mask[begin..]);
+        }
+    }
+    assert_eq!(remap.next_row(), table.size().height);
+    assert_eq!(remap.row(&mut [], &mut []), Err(RemapError::NoLineLeft));
+    Ok((out, valid))
 }

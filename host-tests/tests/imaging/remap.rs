@@ -12,6 +12,7 @@ use stereopsis::geometry::{
 use stereopsis::imaging::{Remap, RemapError, RemapTable, RemapTableError};
 use stereopsis_host::scene::Random;
 use stereopsis_host::twin::remap as twin;
+use stereopsis_model::held::remapped;
 
 pub const SLOTS: usize = 4096;
 pub type Table = RemapTable<SLOTS>;
@@ -37,37 +38,6 @@ pub fn rectified(
     let pose = Pose::new(turn, Vector3::new(0.06, 0.0005, -0.001)).expect("a pose");
     let rig = StereoRig::new(cameras, pose, [size; 2]).expect("a rig");
     Rectification::new(&rig, crop, size).expect("rectified")
-}
-
-/// The whole image through a remap that holds `N` lines.
-fn whole<const W: usize, const N: usize>(
-    table: &Table,
-    raw: &GrayImage,
-) -> Result<(GrayImage, Vec<u8>), RemapError> {
-    let mut remap = Box::new(Remap::<W, N, SLOTS>::new(table.clone())?);
-    let width = usize::from(table.size().width);
-    let (mut out, mut valid) = (GrayImage::new(width as u32, table.size().height.into()), Vec::new());
-    let mut lines = raw.chunks_exact(raw.width() as usize);
-    // Twice: the second frame begins anew.
-    for _ in 0..2 {
-        valid.clear();
-        lines = raw.chunks_exact(raw.width() as usize);
-        remap.begin();
-        for (row, out) in (0..).zip(out.chunks_exact_mut(width)) {
-            assert_eq!(remap.next_row(), row);
-            let mut mask = vec![9; width];
-            while remap.wants_line() {
-                remap.next_line().copy_from_slice(lines.next().expect("it wants no more than there are"));
-                remap.accept();
-            }
-            assert_eq!(remap.row(out, &mut mask)?, row);
-            valid.extend(mask);
-        }
-    }
-    drop(lines);
-    assert_eq!(remap.next_row(), table.size().height);
-    assert_eq!(remap.row(&mut [], &mut []), Err(RemapError::NoLineLeft));
-    Ok((out, valid))
 }
 
 /// The largest distance between a table's places and the warp's, px, over all pixels that are in the raw
@@ -111,7 +81,7 @@ fn one_degree_works_in_sixteen_rows() {
         let table = Table::new(warp).expect("a table");
         assert!(table.rows() < 16, "{} rows", table.rows());
         let raw = noise(QVGA, 5);
-        assert_eq!(whole::<320, 16>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
+        assert_eq!(remapped::<320, 16, SLOTS>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
         assert!(std::mem::size_of::<RemapTable<{ Table::slots(QVGA, 5) }>>() <= 12 * 1024);
     }
 }
@@ -126,7 +96,7 @@ fn too_small_a_band_is_refused_with_what_would_do() {
         panic!("16 lines are too few")
     };
     assert!((50..90).contains(&needed), "{needed}");
-    assert!(whole::<320, 90>(&table, &noise(QVGA, 6)).is_ok());
+    assert!(remapped::<320, 90, SLOTS>(&table, &noise(QVGA, 6)).is_ok());
     assert_eq!(
         Remap::<319, 90, SLOTS>::new(table.clone()).map(|_| ()),
         Err(RemapError::Width { needed: 320 })
@@ -179,7 +149,10 @@ fn a_strong_lens_stays_within_a_twentieth_of_a_pixel() {
             let far = farthest(&table, warp);
             assert!(far <= 0.05, "{crop:?}: {far} px with cells of {} px", 1 << table.shift());
             let raw = noise(QVGA, 7);
-            assert_eq!(whole::<320, 242>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
+            assert_eq!(
+                remapped::<320, 242, SLOTS>(&table, &raw).expect("enough rows"),
+                twin::remap(&table, &raw)
+            );
         }
     }
 }
@@ -220,10 +193,10 @@ proptest! {
             prop_assert_eq!(table.rows(), rows_held(&table));
             prop_assert!(farthest(&table, warp) <= 0.05, "{}", farthest(&table, warp));
             let raw = noise(size, seed);
-            prop_assert_eq!(whole::<150, 121>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
+            prop_assert_eq!(remapped::<150, 121, SLOTS>(&table, &raw).expect("enough rows"), twin::remap(&table, &raw));
             // Powers of two take another way through the band.
             if table.rows() <= 32 {
-                prop_assert_eq!(whole::<150, 33>(&table, &raw).expect("enough rows"),
+                prop_assert_eq!(remapped::<150, 33, SLOTS>(&table, &raw).expect("enough rows"),
                     twin::remap(&table, &raw));
             }
         }

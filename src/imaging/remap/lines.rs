@@ -156,14 +156,17 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         let band = Band::new(&self.lines, first - first % Self::ROWS, raw, piece);
         let cell = 1 << self.table.shift();
         let mut segments = self.table.segments(row, self.table.is_whole(row));
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+        super::armv7em::fill_with_ones(valid);
+        #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
         valid.fill(1);
         for (out, valid) in out.chunks_mut(cell).zip(valid.chunks_mut(cell)) {
             let Some(segment) = segments.step() else { break };
             match segment.part {
-                Part::All => band.segment::<false>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid),
+                Part::All => band.segment::<false>(segment, Cell::from_mut(out).as_slice_of_cells(), valid),
                 Part::Some => {
                     segment.mask(raw, piece, valid);
-                    band.segment::<true>(&segment, Cell::from_mut(out).as_slice_of_cells(), valid);
+                    band.segment::<true>(segment, Cell::from_mut(out).as_slice_of_cells(), valid);
                 }
                 Part::None => {
                     valid.fill(0);

@@ -26,49 +26,108 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
     }
 
     /// Writes the pixels of a segment, which is at an `EDGE` unless it is wholly inside the raw image.
+    #[inline(always)]
+    pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
+        #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+        if !EDGE && self.piece == 2 {
+            let (fours, rest) = out.as_chunks();
+            if self.in_step(segment, fours) == fours.len() && rest.is_empty() {
+                return;
+            }
+        }
+        self.pieces::<EDGE>(segment, out, valid);
+    }
+
+    /// Writes the first pixels of a segment in fours, as many as [`armv7em::fours`](super::armv7em::fours)
+    /// does; returns how many fours.
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+    #[inline(never)]
+    fn in_step(&self, Segment { column, row, .. }: &Segment, fours: &[[Cell<u8>; 4]]) -> usize {
+        let mut row = *row;
+        row.start = row.start.wrapping_sub(self.top);
+        let at = Self::index(column.start, row.start);
+        super::armv7em::fours::<W>(self.lines, at, [column, &row], fours)
+    }
+
+    /// Writes the pixels of a segment, piece by piece.
     ///
     /// Writing to cells makes the compiler finish each pixel before the next, which keeps its values in
     /// registers.
     #[inline(never)]
-    pub fn segment<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
-        let (mut x, mut y) = (segment.column.start, segment.row.start.wrapping_sub(self.top));
-        let (mut right, mut down) = (segment.column.step, segment.row.step);
-        let (more_right, more_down) = (segment.column.bend, segment.row.bend);
-        let (mut out, mut valid) = (out, valid);
+    fn pieces<const EDGE: bool>(&self, segment: &Segment, out: &[Cell<u8>], valid: &[u8]) {
+        let (mut segment, mut out, mut valid) = (*segment, out, valid);
         if self.piece == 2 && segment.column.is_narrow(out.len() / 4) {
             let ((fours, rest), (valids, rest_valid)) = (out.as_chunks::<4>(), valid.as_chunks::<4>());
-            for (four, valid) in fours.iter().zip(valids) {
-                let end = y.wrapping_add(down << 2);
-                // Mostly all of it is between the same two rows.
-                let crossed = (y ^ end) >> BITS;
-                let is_done = (!EDGE || *valid == [1; 4])
-                    && if crossed == 0 {
-                        self.between_two(x, y, right, down, four)
-                    } else {
-                        self.between_three(x, y, right, down, four)
-                    };
-                if !is_done {
-                    self.piece::<EDGE>(x, y, right, down, four, valid);
-                }
-                x = x.wrapping_add(right << 2);
-                y = end;
-                // Says no more than is known, places being less than 2^29 apart, and keeps the compiler from
-                // counting multiples of the steps along.
-                right = right.wrapping_add(more_right) & NARROW;
-                down = down.wrapping_add(more_down) << 4 >> 4;
-            }
+            #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+            self.mostly_in_step::<EDGE>(&mut segment, fours, valids);
+            #[cfg(not(any(stereopsis_dsp, stereopsis_vectors)))]
+            self.fours::<EDGE>(&mut segment, fours, valids);
             if rest.is_empty() {
                 return;
             }
             (out, valid) = (rest, rest_valid);
         }
+        let Segment { mut column, mut row, .. } = segment;
+        row.start = row.start.wrapping_sub(self.top);
         for (out, valid) in out.chunks(1 << self.piece).zip(valid.chunks(1 << self.piece)) {
-            self.piece::<EDGE>(x, y, right, down, out, valid);
-            x = x.wrapping_add(right << self.piece);
-            y = y.wrapping_add(down << self.piece);
-            right = right.wrapping_add(more_right);
-            down = down.wrapping_add(more_down);
+            self.piece::<EDGE>(column.start, row.start, column.step, row.step, out, valid);
+            column.advance(self.piece);
+            row.advance(self.piece);
         }
+    }
+
+    /// [`Self::fours`], [`Self::in_step`] but for those that it stops before.
+    #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
+    fn mostly_in_step<const EDGE: bool>(
+        &self,
+        segment: &mut Segment,
+        mut fours: &[[Cell<u8>; 4]],
+        mut valids: &[[u8; 4]],
+    ) {
+        while !fours.is_empty() {
+            let most = match EDGE {
+                true => valids.iter().take_while(|valid| **valid == [1; 4]).count(),
+                false => fours.len(),
+            };
+            let done = self.in_step(segment, fours.get(..most).unwrap_or_default());
+            segment.column = segment.column.after(done as i32);
+            segment.row = segment.row.after(done as i32);
+            // Where it does none that it may do, it would do none of the others.
+            let end = if done == 0 && most > 0 { fours.len() } else { fours.len().min(done + 1) };
+            let others = fours.get(done..end).unwrap_or_default();
+            self.fours::<EDGE>(segment, others, valids.get(done..end).unwrap_or_default());
+            (fours, valids) = (fours.get(end..).unwrap_or_default(), valids.get(end..).unwrap_or_default());
+        }
+    }
+
+    /// Writes pixels in fours, whose columns advance by less than 2 px; the segment goes on after them.
+    #[inline(always)]
+    fn fours<const EDGE: bool>(&self, segment: &mut Segment, fours: &[[Cell<u8>; 4]], valids: &[[u8; 4]]) {
+        let Segment { column, row, .. } = segment;
+        let (mut x, mut y) = (column.start, row.start.wrapping_sub(self.top));
+        let (mut right, mut down) = (column.step, row.step);
+        for (four, valid) in fours.iter().zip(valids) {
+            let end = y.wrapping_add(down << 2);
+            // Mostly all of it is between the same two rows.
+            let crossed = (y ^ end) >> BITS;
+            let is_done = (!EDGE || *valid == [1; 4])
+                && if crossed == 0 {
+                    self.between_two(x, y, right, down, four)
+                } else {
+                    self.between_three(x, y, right, down, four)
+                };
+            if !is_done {
+                self.piece::<EDGE>(x, y, right, down, four, valid);
+            }
+            x = x.wrapping_add(right << 2);
+            y = end;
+            // Says no more than is known, places being less than 2^29 apart, and keeps the compiler from
+            // counting multiples of the steps along.
+            right = right.wrapping_add(column.bend) & NARROW;
+            down = down.wrapping_add(row.bend) << 4 >> 4;
+        }
+        (column.start, column.step) = (x, right);
+        (row.start, row.step) = (y.wrapping_add(self.top), down);
     }
 
     /// Interpolates four pixels between the same two rows; false if they are not.

@@ -29,7 +29,8 @@ pub(super) struct Segment {
 }
 
 /// One coordinate of a segment's pixels, px with [`BITS`] fractional bits plus half a 256th: from `start`
-/// along straight pieces, by `step` per pixel in the first piece and `bend` more in each next one.
+/// along straight pieces, by `step` per pixel in the first piece and `bend` more in each next one. All three
+/// are even, so that the fractions of both coordinates, with a bit for what overflows, fit into one word.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Run {
     pub start: i32,
@@ -42,12 +43,32 @@ pub(super) struct Run {
 pub(super) struct Cell {
     /// Side as a power of two.
     shift: u32,
-    /// Whether straight pieces have four pixels, not one.
-    is_fours: bool,
-    /// Shift from a second difference of four positions to a bend.
-    bend_shift: u32,
+    /// From the distance of two positions to a step.
+    step: Rounded,
+    /// From a second difference of four positions to a bend.
+    bend: Rounded,
     /// Number of bends along a cell.
     bent: i32,
+    /// All bits of the bend where straight pieces have four pixels, none where they have one.
+    moved: i32,
+}
+
+/// Division by a power of two, rounded to the nearest even number.
+#[derive(Clone, Copy, Debug)]
+struct Rounded {
+    half: i32,
+    shift: u32,
+}
+
+impl Rounded {
+    fn by(shift: u32) -> Self {
+        Self { half: 1 << shift, shift: shift + 1 }
+    }
+
+    #[inline(always)]
+    fn of(self, x: i32) -> i32 {
+        (x.wrapping_add(self.half) >> (self.shift & 31)) << 1
+    }
 }
 
 impl Cell {
@@ -56,14 +77,21 @@ impl Cell {
         let pieces = 1 << (shift - piece);
         Self {
             shift,
-            is_fours: piece > 0,
-            bend_shift: 2 * shift + 1 - piece,
+            step: Rounded::by(shift),
+            bend: Rounded::by(2 * shift + 1 - piece),
             bent: (pieces * (pieces - 1) / 2) << piece,
+            moved: if piece > 0 { -1 } else { 0 },
         }
     }
 }
 
 impl Segment {
+    /// One without pixels.
+    pub const NONE: Self = {
+        let nowhere = Run { start: 0, step: 0, bend: 0 };
+        Self { column: nowhere, row: nowhere, part: Part::None }
+    };
+
     /// Clears the mask of pixels outside the raw image.
     pub fn mask(&self, raw: ImageSize, piece: u32, valid: &mut [u8]) {
         match self.part {
@@ -104,11 +132,10 @@ impl Run {
     /// its middle, so that all are moved by a quarter.
     #[inline(always)]
     pub fn between([before, from, to, after]: [i32; 4], cell: &Cell) -> Self {
-        let bend = rounded(before + after - from - to, cell.bend_shift);
-        let bent = cell.bent * bend;
-        let step = rounded(to - from - bent, cell.shift);
-        let start = from + HALF - if cell.is_fours { bend / 4 } else { 0 };
-        Self { start, step, bend }
+        let bend = cell.bend.of(before + after - from - to);
+        let step = cell.step.of(to - from - cell.bent * bend);
+        let start = from + HALF - ((bend & cell.moved) >> 2);
+        Self { start: start & !1, step, bend }
     }
 
     /// Bounds of the positions along a cell.
@@ -144,17 +171,22 @@ impl Run {
         is_small(self.step) && is_small(self.step.wrapping_add(self.bend.wrapping_mul(pieces as i32)))
     }
 
+    /// The run from that many pieces of four pixels on.
+    #[cfg(any(test, stereopsis_dsp, stereopsis_vectors))]
+    #[inline(always)]
+    pub fn after(&self, pieces: i32) -> Self {
+        let bent = self.bend.wrapping_mul(pieces.wrapping_mul(pieces.wrapping_sub(1)) << 1);
+        let advance = self.step.wrapping_mul(pieces << 2).wrapping_add(bent);
+        let step = self.step.wrapping_add(self.bend.wrapping_mul(pieces));
+        Self { start: self.start.wrapping_add(advance), step, bend: self.bend }
+    }
+
     /// Advances by a piece; past the last one the run is meaningless.
     #[inline(always)]
     pub fn advance(&mut self, piece: u32) {
         self.start = self.start.wrapping_add(self.step << piece);
         self.step = self.step.wrapping_add(self.bend);
     }
-}
-
-/// `x / 2^shift`, rounded to nearest.
-fn rounded(x: i32, shift: u32) -> i32 {
-    (x + (1 << (shift - 1))) >> shift
 }
 
 #[cfg(test)]
@@ -170,6 +202,8 @@ mod tests {
         let places: [i32; 6] = core::array::from_fn(|k| run.places(2).nth(k).unwrap_or(0) - run.start);
         assert_eq!(places, [0, 64, 128, 192, 256, 448]);
         assert_eq!(run.reach(&cell), (run.start - 1, run.start + 1025));
+        let after = |pieces: i32| (run.after(pieces).start - run.start, run.after(pieces).step);
+        assert_eq!([0, 1, 2].map(after), [(0, 64), (256, 192), (1024, 320)]);
         // And in pieces of one.
         let run = Run::between([1024, 0, 1024, 4096], &Cell::new(3, 0));
         let places: [i32; 5] = core::array::from_fn(|k| run.places(0).nth(k).unwrap_or(0) - HALF);

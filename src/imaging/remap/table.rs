@@ -16,12 +16,15 @@ use nalgebra::Point2;
 /// quotients and roots alone.
 #[derive(Clone, Debug)]
 pub struct RemapTable<const SLOTS: usize> {
-    /// The lattice, row by row: column and row, where the column's lowest bit means that the lens model does
-    /// not describe the position. Then two rectified rows per slot: first and, 16 bits higher, last raw row,
-    /// and [`WHOLE`].
+    /// The lattice, column by column: column and row, where the column's lowest bit means that the lens model
+    /// does not describe the position. Then two rectified rows per slot: first and, 16 bits higher, last raw
+    /// row, and [`WHOLE`].
     slots: [[i32; 2]; SLOTS],
     shift: u8,
     piece: u8,
+    /// Rows of the lattice, and its points.
+    lattice_rows: u16,
+    nodes: u32,
     size: ImageSize,
     raw: ImageSize,
     rows: u16,
@@ -48,7 +51,8 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Creates the table of an image without pixels, for [`Self::set`]. All its bytes are zero, so that a
     /// static takes no flash.
     pub const fn empty() -> Self {
-        Self { slots: [[0; 2]; SLOTS], shift: 0, piece: 0, size: NO_PIXELS, raw: NO_PIXELS, rows: 0 }
+        let (slots, size, raw) = ([[0; 2]; SLOTS], NO_PIXELS, NO_PIXELS);
+        Self { slots, shift: 0, piece: 0, lattice_rows: 0, nodes: 0, size, raw, rows: 0 }
     }
 
     /// Tabulates a warp.
@@ -67,6 +71,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Resets to [`Self::empty`].
     pub(super) fn clear(&mut self) {
         (self.size, self.raw, self.rows) = (NO_PIXELS, NO_PIXELS, 0);
+        (self.lattice_rows, self.nodes) = (0, 0);
     }
 
     fn make<T: Real>(&mut self, warp: &Warp<T>) -> Result<(), RemapTableError> {
@@ -112,12 +117,13 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     }
 
     fn fill<T: Real>(&mut self, warp: &Warp<T>, shift: u32) -> Result<(), RemapTableError> {
-        let (columns, needed) = (lattice(self.size.width, shift), Self::slots(self.size, shift));
+        let (rows, needed) = (lattice(self.size.height, shift), Self::slots(self.size, shift));
         let slots = self.slots.get_mut(..needed).ok_or(RemapTableError::Slots { needed })?;
-        let nodes = slots.get_mut(..Self::nodes(self.size, shift)).unwrap_or_default();
-        self.shift = shift as u8;
-        for (y, row) in nodes.chunks_exact_mut(columns).enumerate() {
-            for (x, node) in row.iter_mut().enumerate() {
+        let count = Self::nodes(self.size, shift);
+        let nodes = slots.get_mut(..count).unwrap_or_default();
+        (self.shift, self.lattice_rows, self.nodes) = (shift as u8, rows as u16, count as u32);
+        for (x, column) in nodes.chunks_exact_mut(rows).enumerate() {
+            for (y, node) in column.iter_mut().enumerate() {
                 // The lattice begins one cell outside the image.
                 let place = |i: usize| T::count(i << shift) - T::count(1 << shift);
                 *node = match warp.source(&Point2::new(place(x), place(y))) {
@@ -155,10 +161,10 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
         self.rows
     }
 
-    /// Returns the lattice, row by row from one cell left of and above the image: column and row in 1/65536
-    /// px, with the column's lowest bit set where the lens model does not describe the position.
+    /// Returns the lattice, column by column from one cell left of and above the image: column and row in
+    /// 1/65536 px, with the column's lowest bit set where the lens model does not describe the position.
     pub fn places(&self) -> &[[i32; 2]] {
-        self.slots.get(..Self::nodes(self.size, self.shift())).unwrap_or(&[])
+        self.slots.get(..self.nodes as usize).unwrap_or(&[])
     }
 
     /// Returns the first and the last raw row that a rectified row needs; `None` where it is outside the raw
@@ -176,7 +182,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// Entry of a row; [`NOWHERE`] outside the image.
     fn noted(&self, row: u16) -> u32 {
-        let slot = self.slots.get(Self::nodes(self.size, self.shift()) + usize::from(row / 2));
+        let slot = self.slots.get(self.nodes as usize + usize::from(row / 2));
         slot.and_then(|slot| slot.get(usize::from(row % 2))).map_or(NOWHERE, |noted| noted.cast_unsigned())
     }
 
@@ -193,7 +199,7 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
 
     /// Computes which raw rows each row needs, and how many must be held at once.
     fn note_rows(&mut self) {
-        let begin = Self::nodes(self.size, self.shift());
+        let begin = self.nodes as usize;
         let last_row = i32::from(self.raw.height.saturating_sub(1));
         let of = |place: i32| (place >> BITS).max(0).min(last_row);
         let cell = Cell::new(self.shift(), self.piece());
@@ -224,20 +230,11 @@ impl<const SLOTS: usize> RemapTable<SLOTS> {
     /// Segments of a rectified row, which is wholly inside the raw image if `is_whole`.
     #[inline]
     pub(super) fn segments(&self, row: u16, is_whole: bool) -> Segments<'_> {
-        // Cells that begin in the image.
-        let cells = self.size.width.div_ceil(1 << self.shift);
-        let (rows, shift, piece) = (self.rows_around(row), self.shift(), self.piece());
-        Segments::new(&Lattice { rows, shift, piece, cells, raw: self.raw }, row, is_whole)
-    }
-
-    /// Four rows of the lattice around a rectified row.
-    fn rows_around(&self, row: u16) -> [&[[i32; 2]]; 4] {
-        let columns = lattice(self.size.width, self.shift());
-        let above = usize::from(row >> self.shift);
-        core::array::from_fn(|i| {
-            let begin = (above + i) * columns;
-            self.slots.get(begin..begin + columns).unwrap_or(&[])
-        })
+        // The row is between the second and the third of four from here on in each column.
+        let around = self.places().get(usize::from(row >> self.shift)..).unwrap_or(&[]);
+        let columns = around.chunks(usize::from(self.lattice_rows).max(1));
+        let (shift, piece, raw) = (self.shift(), self.piece(), self.raw);
+        Segments::new(Lattice { columns, shift, piece, raw }, row, is_whole)
     }
 }
 

@@ -21,8 +21,8 @@ pub fn remap<const SLOTS: usize>(table: &RemapTable<SLOTS>, raw: &GrayImage) -> 
 /// lens is not described.
 pub fn place<const SLOTS: usize>(table: &RemapTable<SLOTS>, u: u32, v: u32) -> Option<[i64; 2]> {
     let cell = 1_i64 << table.shift();
-    let columns = usize::from(table.size().width).div_ceil(cell as usize) + 3;
-    let node = |i: usize, j: usize| table.places()[j * columns + i].map(i64::from);
+    let rows = usize::from(table.size().height).div_ceil(cell as usize) + 3;
+    let node = |i: usize, j: usize| table.places()[i * rows + j].map(i64::from);
     let (i, j) = (u as usize / cell as usize, v as usize / cell as usize);
     let corners = [(1, 1), (2, 1), (1, 2), (2, 2)];
     if corners.iter().any(|(x, y)| node(i + x, j + y)[0] & 1 == 1) {
@@ -38,17 +38,18 @@ pub fn place<const SLOTS: usize>(table: &RemapTable<SLOTS>, u: u32, v: u32) -> O
         let weights = [first, second, third, (1 << 20) - first - second - third];
         let [a, b, c, d] = [0, 1, 2, 3].map(|x| {
             let sum: i64 = (0..4).map(|y| weights[y] * node(i + x, j + y)[axis]).sum();
-            (sum + (1 << 19)).div_euclid(1 << 20)
+            // To the nearest even number, the lower one of two.
+            -2 * ((1 << 20) - sum).div_euclid(1 << 21)
         });
         // Along the row by a parabola, drawn as straight lines.
         let length = 1 << table.piece();
         let pieces = cell / length;
-        let to_nearest = |x: i64, by: i64| (x + by / 2).div_euclid(by);
-        let bend = to_nearest(a + d - b - c, 2 * cell * cell / length);
-        let step = to_nearest(c - b - length * pieces * (pieces - 1) / 2 * bend, cell);
+        let to_nearest_even = |x: i64, by: i64| 2 * (x + by).div_euclid(2 * by);
+        let bend = to_nearest_even(a + d - b - c, 2 * cell * cell / length);
+        let step = to_nearest_even(c - b - length * pieces * (pieces - 1) / 2 * bend, cell);
         let (piece, rest) = ((i64::from(u) % cell) / length, i64::from(u) % length);
-        let middle = if length == 1 { 0 } else { bend / 4 };
-        b + 128 - middle
+        let middle = if length == 1 { 0 } else { bend.div_euclid(4) };
+        2 * (b + 128 - middle).div_euclid(2)
             + length * (piece * step + piece * (piece - 1) / 2 * bend)
             + rest * (step + piece * bend)
     }))

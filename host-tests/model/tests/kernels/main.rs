@@ -5,6 +5,7 @@
 //!   that repeat. `any`: any combination of them. `penalties`: those at the bounds.
 //! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
 //!   place. `external`: rows of winners from outside.
+//! * `remap`: rectified lines.
 
 mod any;
 mod external;
@@ -13,6 +14,7 @@ mod list;
 mod moved;
 mod penalties;
 mod pictures;
+mod remap;
 mod repeats;
 
 use stereopsis::imaging::Noise;

@@ -13,7 +13,7 @@ use std::convert::Infallible;
 use stereopsis::matching::Row;
 
 /// The most instructions for a rectified pixel on these cores, whatever the lens.
-const MOST_PER_PIXEL: f64 = 40.0;
+const MOST_PER_PIXEL: f64 = 34.0;
 /// The cores that this is for.
 const HELD: [&str; 2] = ["m4", "m7"];
 /// The most state of both remaps beside the lines, bytes.

@@ -211,8 +211,8 @@ pub(super) fn fours<const W: usize>(
             "add r0, r0, lr",
             "bic r2, r2, #0x8000",
             "b 3b",
-            // The four ends a row below or above: fractions and steps in a register each, and whether that row
-            // is among the lines.
+            // The four ends a row below or above: fractions and steps in a register each, and whether that
+            // row is among the lines.
             "5:",
             "uxth r8, r2",
             "lsr r9, r2, #16",

@@ -16,17 +16,15 @@ pub(super) const fn gradient_shift(noise: Noise) -> u32 {
     }
 }
 
-/// The lines of both images, of which `rows` are smoothed, each in one of the places.
+/// Smooths `rows` of the lines of both images, each in one of the places.
 pub(super) fn denoise<'a>(
-    lines: [&Rows5<'a>; 2],
+    lines: &mut [Rows5<'a>; 2],
     rows: &[usize],
     mut places: impl Iterator<Item = &'a mut [u8]>,
-) -> [Rows5<'a>; 2] {
-    let mut smoothed = lines.map(|lines| *lines);
-    for lines in &mut smoothed {
+) {
+    for lines in lines {
         denoise_lines(lines, rows, &mut places);
     }
-    smoothed
 }
 
 /// Denoised lines of one image.

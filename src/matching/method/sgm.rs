@@ -222,10 +222,11 @@ fn select<S: SgmParameters, const MOST: usize>(
     let guide = |y: usize| slot(frame.codes, y % guides::<S>(), width);
     let has_noise = config.noise != Noise::None;
     // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
-    let smoothed;
+    let mut smoothed;
     let seen = match lines {
         Some(lines) if has_noise => {
-            smoothed = denoise(lines, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
+            smoothed = lines.map(|lines| *lines);
+            denoise(&mut smoothed, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
             Some(smoothed.each_ref())
         }
         lines => lines,

@@ -12,6 +12,7 @@ use crate::dsp::{ONE, min, min_halves, take_less};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};
@@ -214,9 +215,10 @@ fn second_of(disparity: usize, candidates: usize, room: &mut [u32]) -> u8 {
     let sums = part(room, 1..);
     let others = sums.get(candidates / 4).map_or(u32::MAX, |last| last | u32::MAX << (candidates % 4 * 8));
     let least = sums.iter().take(candidates / 4).fold(others, |least, &sum| min(least, sum));
-    // Bytes that are copied would bring the compiler's routine for that, which nothing else here takes.
-    for (kept, sum) in kept.iter_mut().zip(part_mut(view_mut::<u32, u8>(room), nearest)) {
-        core::mem::swap(kept, sum);
+    for (kept, sum) in kept.iter().zip(part_mut(view_mut::<u32, u8>(room), nearest)) {
+        // Not the compiler's routine for copies, which would be there for this alone.
+        keep_loop();
+        *sum = *kept;
     }
     (of_lanes(least, 0) >> 8) as u8
 }

@@ -1,6 +1,7 @@
 //! Winners become answers: what `portable::left_right` does.
 #![allow(unsafe_code)]
 
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::Rules;
 use crate::matching::memory::winners::Winner;
@@ -31,7 +32,11 @@ macro_rules! offer_one {
 #[inline(never)]
 pub(super) fn offer(winners: &[Winner], right: &mut [u16]) {
     let (eights, rest) = right.as_chunks_mut::<8>();
-    rest.fill(u16::MAX);
+    for one in rest {
+        // Not the compiler's routine, which takes more flash than so few need.
+        keep_loop();
+        *one = u16::MAX;
+    }
     let eights = eights.as_mut_ptr_range();
     let count = winners.len().min(right.len());
     if count == 0 {

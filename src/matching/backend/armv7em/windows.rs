@@ -9,10 +9,10 @@
 use super::Rows;
 use super::rows;
 use crate::dsp::{ONE, min, min_halves, take_less};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};

@@ -76,7 +76,7 @@ impl<'a, const W: usize, const N: usize> Band<'a, W, N> {
         }
     }
 
-    /// [`Self::fours`], [`Self::in_step`] but for those that it stops before.
+    /// [`Self::fours`] by [`Self::in_step`], but for those that it stops before.
     #[cfg(any(stereopsis_dsp, stereopsis_vectors))]
     fn mostly_in_step<const EDGE: bool>(
         &self,

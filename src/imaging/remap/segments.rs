@@ -115,7 +115,7 @@ impl Iterator for Segments<'_> {
     }
 }
 
-/// Interpolates a position between four to even numbers.
+/// Interpolates a position between four by their negative weights, rounded to an even number.
 #[inline(always)]
 fn interpolate(around: &[[i32; 2]; 4], weights: &[i32; 4]) -> [i32; 2] {
     let mut sums = [1_i64 << 31; 2];

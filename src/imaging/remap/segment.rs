@@ -65,6 +65,7 @@ impl Rounded {
         Self { half: 1 << shift, shift: shift + 1 }
     }
 
+    // A shift that is known to be less than 32 takes no code for others.
     #[inline(always)]
     fn of(self, x: i32) -> i32 {
         (x.wrapping_add(self.half) >> (self.shift & 31)) << 1

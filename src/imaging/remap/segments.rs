@@ -31,6 +31,7 @@ pub(super) struct Segments<'a> {
     most: [i32; 2],
     /// Whether all segments are inside the raw image.
     is_whole: bool,
+    /// The last one found.
     segment: Segment,
 }
 

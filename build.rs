@@ -12,7 +12,7 @@ const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
-    for name in ["dsp", "vectors", "portable", "simd"] {
+    for name in ["dsp", "vectors", "thumb2", "portable", "simd"] {
         println!("cargo::rustc-check-cfg=cfg(stereopsis_{name})");
     }
     let target = env::var("TARGET").unwrap_or_default();
@@ -55,10 +55,16 @@ fn choose(target: &str, flags: &str) -> Result<Option<&'static str>, String> {
              that has them build with -C target-cpu=cortex-m33, which chooses them by itself"
         ));
     }
-    let is_chosen = ["stereopsis_dsp", "stereopsis_vectors", "stereopsis_portable"].into_iter().any(asked);
-    Ok(match (is_chosen, has_vectors, has_dsp) {
-        (true, ..) | (_, false, false) => None,
+    let has_thumb2 = is_v8 || target.starts_with("thumbv7");
+    if asked("stereopsis_thumb2") && !has_thumb2 {
+        return Err(format!("stereopsis_thumb2: {target} has no Thumb-2 instructions: leave it out"));
+    }
+    let names = ["stereopsis_dsp", "stereopsis_vectors", "stereopsis_thumb2", "stereopsis_portable"];
+    Ok(match (names.into_iter().any(asked), has_vectors, has_dsp) {
+        (true, ..) => None,
         (_, true, _) => Some("stereopsis_vectors"),
         (_, _, true) => Some("stereopsis_dsp"),
+        // What is compiled for an A-profile's system is portable if nothing is asked.
+        _ => (has_thumb2 && !is_a).then_some("stereopsis_thumb2"),
     })
 }

@@ -1,6 +1,6 @@
 //! The kernels for Arm beside their naive twins, and the features of pictures beside their definitions, in
 //! emulators of programs: the vectors of 64 bits, and, in the assembler of 32 bits, the instructions that
-//! Cortex-M4, M7 and M33 have on four bytes.
+//! Cortex-M4, M7 and M33 have on four bytes and those that a Cortex-M3 has.
 
 use crate::kernels;
 use crate::packages;
@@ -10,8 +10,8 @@ use crate::steps::{Outcome, cargo, run as run_command, target_dir};
 use std::process::Command;
 use std::time::Instant;
 
-/// Tests that are long and see nothing on 64-bit Arm that the other tests do not: the rows of the block
-/// methods are the same safe code as on the host.
+/// Tests that are long and see nothing on 64-bit Arm, and in a Cortex-M3's instructions, that the other tests
+/// do not: the rows of the block methods are the same safe code as on the host.
 const SAME_AS_HOST: &[&str] = &["fast_equals_its_twin_at_all_sizes", "block_equals_its_twin_at_all_sizes"];
 
 /// A processor that the tests are built for.
@@ -25,6 +25,8 @@ pub struct Arm {
     libraries: &'static str,
     /// For the compiler.
     flags: &'static str,
+    /// Where it is built: flags belong to a target.
+    folder: &'static str,
     /// Tests that are left out.
     skipped: &'static [&'static str],
 }
@@ -36,6 +38,7 @@ const ARM64: Arm = Arm {
     emulator: "qemu-aarch64",
     libraries: "/usr/aarch64-linux-gnu",
     flags: "",
+    folder: "arm",
     skipped: SAME_AS_HOST,
 };
 
@@ -47,12 +50,22 @@ const ARM32: Arm = Arm {
     libraries: "/usr/arm-linux-gnueabihf",
     // One that divides, as the Cortex-M do.
     flags: "--cfg stereopsis_dsp -C target-cpu=cortex-a15",
+    folder: "arm",
     skipped: &[],
+};
+
+const ARM32_WORDS: Arm = Arm {
+    name: "32-bit Arm without instructions on bytes",
+    flags: "--cfg stereopsis_thumb2 -C target-cpu=cortex-a15",
+    folder: "arm-words",
+    skipped: SAME_AS_HOST,
+    ..ARM32
 };
 
 /// Those that the tests do not run on anyway.
 fn others() -> impl Iterator<Item = Arm> {
-    [ARM64, ARM32].into_iter().filter(|arm| !(cfg!(target_arch = "aarch64") && arm.target == ARM64.target))
+    let is_this = |arm: &Arm| cfg!(target_arch = "aarch64") && arm.target == ARM64.target;
+    [ARM64, ARM32, ARM32_WORDS].into_iter().filter(move |arm| !is_this(arm))
 }
 
 /// Adds their targets, linkers and emulators.
@@ -61,45 +74,44 @@ pub fn set_up() -> Outcome {
     packages::install(&others().flat_map(|arm| [arm.linker, arm.emulator]).collect::<Vec<_>>())
 }
 
-/// Builds the tests for all of them at once, then runs them side by side.
+/// Builds the tests for each of them, then runs them side by side.
 pub fn run() -> Outcome {
     set_up()?;
     let arms: Vec<_> = others().collect();
-    for tests in [kernels::emulated(), features()] {
-        run_command(&mut on(tests, &arms, &["--no-run"]))?;
+    for arm in &arms {
+        for mut tests in arm.tests(&["--no-run"]) {
+            run_command(&mut tests)?;
+        }
     }
     parallel::work(arms, |arm| arm.run()).map(drop)
 }
 
-/// Cargo with the crate's own tests of features.
-fn features() -> Command {
-    cargo(&["test", "--locked", "-p", "stereopsis", "--lib", "features"])
-}
-
-/// Cargo's tests on these processors.
-fn on(mut tests: Command, arms: &[Arm], arguments: &[&str]) -> Command {
-    tests.args(arms.iter().flat_map(|arm| ["--target", arm.target])).args(arguments);
-    for arm in arms {
-        let variable =
-            |what: &str| format!("CARGO_TARGET_{}_{what}", arm.target.replace('-', "_").to_uppercase());
-        tests.env(variable("LINKER"), arm.linker);
-        tests.env(variable("RUNNER"), format!("{} -L {}", arm.emulator, arm.libraries));
-        tests.env(variable("RUSTFLAGS"), arm.flags);
-    }
-    // Other steps build at the same time.
-    tests.env("CARGO_TARGET_DIR", target_dir().join("arm"));
-    tests
-}
+/// The crate's own tests that are run: of features, and of what is done to each word along paths.
+const OWN: &[&str] = &["features", "rounds"];
 
 impl Arm {
+    /// The tests of kernels and the crate's own, each with which of them are run.
+    fn tests(&self, arguments: &[&str]) -> [Command; 2] {
+        let own = cargo(&["test", "--locked", "-p", "stereopsis", "--lib"]);
+        [(kernels::emulated(), [].as_slice()), (own, OWN)].map(|(mut tests, names)| {
+            let variable =
+                |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
+            tests.env(variable("LINKER"), self.linker);
+            tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
+            tests.env(variable("RUSTFLAGS"), self.flags);
+            // Other steps build at the same time.
+            tests.env("CARGO_TARGET_DIR", target_dir().join(self.folder));
+            tests.args(["--target", self.target]).args(arguments).args(["--", "--test-threads", "1"]);
+            tests.args(names).args(self.skipped.iter().flat_map(|test| ["--skip", test]));
+            tests
+        })
+    }
+
     /// Runs the tests, which are built.
     fn run(&self) -> Outcome {
-        let skip = self.skipped.iter().flat_map(|test| ["--skip", test]);
-        // Each has a processor.
-        let arguments: Vec<_> = ["--", "--test-threads", "1"].into_iter().chain(skip).collect();
         let started = Instant::now();
-        for tests in [kernels::emulated(), features()] {
-            run_command(&mut on(tests, &[*self], &arguments))?;
+        for mut tests in self.tests(&[]) {
+            run_command(&mut tests)?;
         }
         println!("{} took {:.1} s", self.name, started.elapsed().as_secs_f64());
         Ok(())

@@ -135,7 +135,7 @@ macro_rules! in_words {
             16 if MOST == 0 || MOST == 16 => {
                 words::$pass::<Quarters<4, true, 16>, $($more)?>($work, $($argument),*)
             }
-            ..=32 if MOST == 32 => words::$pass::<Quarters<8, true, 20>, $($more)?>($work, $($argument),*),
+            ..=32 if MOST == 32 => words::$pass::<Quarters<8, true, 28>, $($more)?>($work, $($argument),*),
             // Room for as few as will do: it stands on the stack.
             ..=64 if MOST != 16 && MOST != 32 => {
                 words::$pass::<Quarters<16, false, 28>, $($more)?>($work, $($argument),*)

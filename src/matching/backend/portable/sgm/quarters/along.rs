@@ -1,8 +1,9 @@
 //! The paths along the row.
 
 use super::columns::words;
-use super::lanes::{least_of_four, lesser};
-use super::steps::{Change, Step, Steps, close, ends};
+use super::lanes::least_of_four;
+use super::rounds;
+use super::steps::{Steps, close};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{chunks, part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
@@ -11,40 +12,30 @@ use core::cell::Cell;
 /// A path along the row: the least of its costs at a pixel. The costs are in a column, all moved by the same
 /// number.
 pub(super) struct Along {
+    steps: Steps,
     least: u32,
     /// Candidates that stand before those that are searched.
     beyond: usize,
-    far: u32,
 }
 
 impl Along {
     /// Before the first pixel all cost nothing.
     #[inline(always)]
-    pub fn new(work: &PathWork<'_>, steps: &Steps, count: usize) -> Self {
-        Self { least: 0, beyond: (4 * count).saturating_sub(work.disparities), far: steps.far }
+    pub fn new(work: &PathWork<'_>, count: usize) -> Self {
+        let beyond = (4 * count).saturating_sub(work.disparities);
+        Self { steps: Steps::new(work.penalties, count), least: 0, beyond }
     }
 
-    /// Goes on from the column `from`, or from no costs, to `to`, a pixel that has these costs. Both may be
-    /// the same.
+    /// Goes on from the column `from`, or from no costs, to `to`, a pixel that has these costs and differs by
+    /// a change of brightness. Both may be the same. Returns what a jump costs there.
     #[inline(always)]
-    pub fn advance(&mut self, change: Change, costs: &[u32], from: &[Cell<u32>], to: &[Cell<u32>]) {
-        let step = Step::new(ends(from), self.least, change, self.far);
-        let mut marked = u32::MAX;
-        let with = costs.as_chunks().0.iter().zip(to.as_chunks().0);
-        let with =
-            with.map(|([a, b, c, d], [to_a, to_b, to_c, to_d])| [(a, to_a), (b, to_b), (c, to_c), (d, to_d)]);
-        step.through(from, with, |(cost, to), come| {
-            let path = come.wrapping_sub(*cost);
-            to.set(path);
-            marked = lesser(marked, path);
-        });
-        // Else the compiler finds the least only where nothing is beyond the search, of words put away
-        // for it.
-        marked = core::hint::black_box(marked);
+    pub fn advance(&mut self, change: u8, costs: &[u32], from: &[Cell<u32>], to: &[Cell<u32>]) -> u32 {
+        let (least, jump) = rounds::along(&self.steps, (change, self.least), costs, from, to);
+        self.least = least;
         if self.beyond > 0 {
-            marked = close(to, self.beyond, self.far);
+            self.least = least_of_four(close(to, self.beyond, self.steps.far));
         }
-        self.least = least_of_four(marked);
+        jump
     }
 }
 
@@ -52,9 +43,8 @@ impl Along {
 /// workspace.
 #[inline(never)]
 pub(super) fn right<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
-    let steps = Steps::new(work.penalties);
     let count = words::<WORDS, ALL>(work);
-    let mut path = Along::new(work, &steps, count);
+    let mut path = Along::new(work, count);
     let costs = chunks(view::<u8, u32>(work.costs), count);
     let columns = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
     let jumps = view_mut::<u32, u8>(work.workspace);
@@ -63,9 +53,7 @@ pub(super) fn right<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>
     let mut before = 0;
     let pixels = part(guide.here, ..work.width).iter().zip(jumps);
     for ((&here, jump), (costs, to)) in pixels.zip(costs.zip(chunks(columns, count))) {
-        let change = steps.between(here, before);
-        *jump = change.jump as u8;
-        path.advance(change, costs, from, to);
+        *jump = path.advance(here.abs_diff(before), costs, from, to) as u8;
         (before, from) = (here, to);
     }
 }

@@ -10,7 +10,7 @@
 //! * `features`: what is compared; `others`: what it is compared with, in the order of the words; `cost`: the
 //!   costs. `edges`: averaged within edges.
 //! * `steps`: from pixel to pixel; `down` and `along`: the paths; `winners`: the last path and the least
-//!   sums; `columns`: where they stand.
+//!   sums; `columns`: where they stand. `rounds`: what is done to each word.
 
 mod along;
 mod columns;
@@ -20,6 +20,7 @@ mod edges;
 mod features;
 mod lanes;
 mod others;
+mod rounds;
 mod steps;
 mod winners;
 

@@ -1,0 +1,274 @@
+//! Rounds in plain Rust.
+
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
+use crate::matching::backend::portable::sgm::quarters::cost::Costs;
+use crate::matching::backend::portable::sgm::quarters::lanes::{
+    TOP, average, least_of_four, lesser, over, splat, up_to_top,
+};
+use crate::matching::backend::portable::sgm::quarters::others::Others;
+use crate::matching::backend::portable::sgm::quarters::steps::{Change, Steps, beside};
+use crate::matching::memory::slices::{chunks_mut, part};
+use crate::matching::memory::views::view;
+use crate::matching::memory::winners::Found;
+use core::cell::Cell;
+
+/// What a pixel of the left image looks like, four times. What is marked is no less than what it is compared
+/// with.
+struct Pixel {
+    along: u32,
+    across: u32,
+    census: u32,
+    brightness: u32,
+    most: u32,
+}
+
+/// Averages the agreements of the pixels from `x` on into their columns; within edges puts them there. A
+/// pixel's `others` begin one after those of the pixel before.
+#[inline(always)]
+pub fn enter<S: SgmParameters>(costs: &Costs<'_>, x: usize, others: &[Others], columns: &mut [u32]) {
+    let Costs { left, rounds, most, margin } = *costs;
+    let [along, across, census, brightness] =
+        [left.along, left.across, left.census, left.brightness].map(|row| part(row, x..));
+    let pixels = along.iter().zip(across).zip(census.iter().zip(brightness));
+    let columns = chunks_mut(columns, FOUR * rounds);
+    for (i, (((&along, &across), (&census, &brightness)), column)) in pixels.zip(columns).enumerate() {
+        let pixel = Pixel {
+            along: splat(along.into()),
+            across: splat(across.into()) | TOP,
+            census: splat(census.into()),
+            brightness: splat((brightness >> 1).into()) | TOP,
+            most,
+        };
+        let others = part(others, i..i + FOUR * rounds).as_chunks::<FOUR>().0;
+        for (cells, others) in column.as_chunks_mut::<FOUR>().0.iter_mut().zip(others) {
+            keep_loop();
+            for (cell, others) in cells.iter_mut().zip(others) {
+                let agreement = agreement(&pixel, others) + margin;
+                *cell = if S::WITHIN_EDGES { agreement } else { average(*cell, agreement) };
+            }
+        }
+    }
+}
+
+/// By how much four candidates cost less than the most.
+#[inline(always)]
+fn agreement(pixel: &Pixel, others: &Others) -> u32 {
+    let [least, greatest, across, census, brightness] = *others;
+    // One of the two is 0: the gradient is below the least or above the greatest, or neither.
+    let along = over(least.wrapping_sub(pixel.along)) | over(greatest.wrapping_add(pixel.along));
+    // How far numbers are apart is twice what the first is over the second, less their difference.
+    let across = pixel.across.wrapping_sub(across);
+    let brightness = pixel.brightness.wrapping_sub(brightness);
+    let brightness = (over(brightness) << 1).wrapping_sub(brightness).wrapping_add(TOP);
+    let twice = along.wrapping_add(over(across));
+    let rest = (brightness >> 2 & 0x3f3f_3f3f).wrapping_add(ones(pixel.census ^ census));
+    over(pixel.most.wrapping_sub(twice << 1).wrapping_add(across).wrapping_sub(rest))
+}
+
+/// How many bits of each byte are set.
+#[inline(always)]
+fn ones(bits: u32) -> u32 {
+    let pairs = bits - (bits >> 1 & 0x5555_5555);
+    let fours = (pairs & 0x3333_3333) + (pairs >> 2 & 0x3333_3333);
+    (fours + (fours >> 4)) & 0x0f0f_0f0f
+}
+
+/// Takes a path along the row: from a column into another one, or into the same, of a pixel that has these
+/// costs, where the brightness changes by so much. Returns the least of the path, whose `least` was handed in,
+/// and what a jump costs.
+#[inline(always)]
+pub fn along(
+    steps: &Steps,
+    (change, least): (u8, u32),
+    costs: &[u32],
+    from: &[Cell<u32>],
+    to: &[Cell<u32>],
+) -> (u32, u32) {
+    let change = steps.of(change);
+    let mut marked = u32::MAX;
+    let with = costs.as_chunks().0.iter().zip(to.as_chunks().0);
+    let with = with.map(|([a, b, c, d], [e, f, g, h])| [(a, e), (b, f), (c, g), (d, h)]);
+    through(steps.far, change, least, from, with, |(cost, to), come| {
+        let path = come.wrapping_sub(*cost);
+        to.set(path);
+        marked = lesser(marked, path);
+    });
+    // Else the compiler finds the least only where it is needed, of words put away for it.
+    (least_of_four(core::hint::black_box(marked)), change.jump)
+}
+
+/// Averages two columns into one, which may be one of them. Returns the least of it.
+#[inline(always)]
+pub fn average_two([one, other]: [&[Cell<u32>]; 2], to: &[Cell<u32>]) -> u32 {
+    let mut marked = u32::MAX;
+    let fours = one.as_chunks::<FOUR>().0.iter().zip(other.as_chunks::<FOUR>().0);
+    for (cells, (one, other)) in to.as_chunks::<FOUR>().0.iter().zip(fours) {
+        keep_loop();
+        for (cell, (one, other)) in cells.iter().zip(one.iter().zip(other)) {
+            let between = average(one.get(), other.get());
+            cell.set(between);
+            marked = lesser(marked, between);
+        }
+    }
+    least_of_four(marked)
+}
+
+/// Takes the path from above, which is there and whose `least` is handed in, to a pixel that has these costs,
+/// where the brightness changes by so much, and adds it to the sums.
+#[inline(always)]
+pub fn down(
+    steps: &Steps,
+    (change, least): (u8, u32),
+    costs: &[u32],
+    path: &[Cell<u32>],
+    sums: &[Cell<u32>],
+) {
+    let change = steps.of(change);
+    let base = steps.base.wrapping_add(splat(change.jump));
+    let with = costs.as_chunks().0.iter().zip(path.as_chunks().0.iter().zip(sums.as_chunks().0));
+    let with =
+        with.map(|([a, b, c, d], ([e, f, g, h], [i, j, k, l]))| [(a, e, i), (b, f, j), (c, g, k), (d, h, l)]);
+    through(steps.far, change, least, path, with, |(cost, to, sum), come| {
+        let path = come.wrapping_add(base).wrapping_sub(*cost);
+        to.set(path);
+        sum.set(sum.get().wrapping_add(path));
+    });
+}
+
+/// Gives what it costs to come to the candidates of each word of a path's column, with the numbers that are
+/// handed on for it: 128 from the least cost by a jump, by as much less as it is to come from near.
+#[inline(always)]
+fn through<T: Copy>(
+    far: u32,
+    change: Change,
+    least: u32,
+    column: &[Cell<u32>],
+    with: impl Iterator<Item = [T; FOUR]>,
+    mut put: impl FnMut(T, u32),
+) {
+    let (step, bound) = (change.step, splat(least + change.jump));
+    let [mut before, behind] = beside(column, far);
+    let mut here = column.first().map_or(0, Cell::get);
+    let mut come = |next: u32| {
+        let near = lesser(lesser(before, next) + step, here);
+        (before, here) = (here | TOP, next);
+        up_to_top(near.wrapping_sub(bound))
+    };
+    let fours = column.as_chunks::<FOUR>().0;
+    for (number, ([_, b, c, d], with)) in fours.iter().zip(with).enumerate() {
+        keep_loop();
+        let [of_a, of_b, of_c, of_d] = with;
+        put(of_a, come(b.get()));
+        put(of_b, come(c.get()));
+        put(of_c, come(d.get()));
+        let next = fours.get(number + 1).map_or(behind, |[next, ..]| next.get());
+        put(of_d, come(next));
+    }
+}
+
+/// The even bytes of a word, or of one moved down by a byte the odd ones.
+const HALVES: u32 = 0x00ff_00ff;
+/// How many bits of a half say which word it is of: a sum has nine, and one is to spare.
+const PLACE: u32 = 6;
+
+/// The winner of a path's column and of the sums of the two others, of so many candidates, which stand last;
+/// all others cost more. Sums are `more` than what they say of costs. Of equal ones the smallest disparity is
+/// taken, which comes last.
+#[inline(always)]
+pub fn winner([path, sums]: [&[u32]; 2], candidates: usize, more: u32) -> Found {
+    // The top bit of each half.
+    const TOP: u32 = 0x8000_8000;
+    let count = path.len();
+    let (mut even, mut odd) = (u32::MAX, u32::MAX);
+    let mut place = (count as u32).wrapping_mul(0x0001_0001);
+    let lesser = |marked: u32, key: u32| {
+        let difference = marked.wrapping_sub(key);
+        let top = difference & TOP;
+        marked - (difference & (top - (top >> 15)))
+    };
+    for (path, sums) in path.as_chunks::<FOUR>().0.iter().zip(sums.as_chunks::<FOUR>().0) {
+        keep_loop();
+        for (&path, &sum) in path.iter().zip(sums) {
+            // A sum above the number of its word, counted down.
+            place = place.wrapping_sub(0x0001_0001);
+            even = lesser(even, (((path & HALVES) + (sum & HALVES)) << PLACE) + place);
+            odd = lesser(odd, (((path >> 8 & HALVES) + (sum >> 8 & HALVES)) << PLACE) + place);
+        }
+    }
+    // The sums above the disparities.
+    let (mut best, mut behind) = (u32::MAX, 4 * count as u32);
+    for half in [even, odd, even >> 16, odd >> 16] {
+        behind = behind.wrapping_sub(count as u32);
+        best = best.min((half & 0x7fc0) << 10 | ((half & 0x3f) + behind));
+    }
+    let disparity = (best & 0xff) as usize;
+    let [path, sums] = [path, sums].map(view::<u32, u8>);
+    let cost = |total: u32| (total.wrapping_sub(more) as i32).min(255) as u8;
+    let at = |disparity: usize| {
+        let place = (4 * count - 1).wrapping_sub(disparity);
+        let count = count.max(1);
+        let byte = 4 * (place % count) + place / count;
+        let [path, sums] = [path, sums].map(|bytes| bytes.get(byte).copied().unwrap_or(0));
+        cost(u32::from(path) + u32::from(sums))
+    };
+    let here = cost(best >> 16);
+    let [mut below, mut above] = [here; 2];
+    let has_above = disparity + 1 < candidates;
+    if has_above {
+        above = at(disparity + 1);
+        below = above;
+    }
+    if disparity > 0 {
+        below = at(disparity - 1);
+        if !has_above {
+            above = below;
+        }
+    }
+    Found { disparity: disparity as u8, cost: here, beside: (below, above) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bits_of_bytes() {
+        for (a, b) in (0..256u32).flat_map(|a| (0..256u32).map(move |b| (a, b))) {
+            let expected = a.count_ones() << 24 | b.count_ones() << 16 | 8 << 8;
+            assert_eq!(ones(a << 24 | b << 16 | 0xff00), expected, "{a} {b}");
+        }
+    }
+
+    /// Numbers of seven bits, and gradients that stand between a least and a greatest one.
+    #[test]
+    fn agreements_are_those_of_the_definition() {
+        for (a, b) in (0..128u32).flat_map(|a| (0..128).map(move |b| (a, b))) {
+            let [low, high] = [b.min(a ^ 5).min(20), b.min(30).max(20)];
+            let along = a % 41;
+            let pixel = Pixel {
+                along: splat(along),
+                across: splat(a) | TOP,
+                census: splat(a),
+                brightness: splat(b) | TOP,
+                most: splat(127),
+            };
+            let others = [
+                splat(low) | TOP,
+                splat(128 - high),
+                splat(b) & 0xff | splat(a) & 0xff00 | splat(b) & 0xffff_0000,
+                splat(2 * b),
+                splat(a),
+            ];
+            let expected = |across: u32| {
+                let rest = low.saturating_sub(along).max(along.saturating_sub(high));
+                let cost = 2 * rest + a.abs_diff(across) + a.abs_diff(b) / 4 + (a ^ 2 * b).count_ones();
+                127u32.saturating_sub(cost)
+            };
+            let [same, other] = [a, b].map(expected);
+            let expected = u32::from_le_bytes([other, same, other, other].map(|cost| cost as u8));
+            assert_eq!(agreement(&pixel, &others), expected, "{a} {b}");
+        }
+    }
+}

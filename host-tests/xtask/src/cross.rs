@@ -20,9 +20,10 @@ pub const NOT_BUILT: [&str; 3] =
 const SMALL: &str = "riscv32imc-unknown-none-elf";
 
 /// What cargo is refused with in one line that says what to do: instructions that a core lacks.
-const REFUSED: [(&str, &str); 2] = [
-    ("--cfg stereopsis_dsp", "stereopsis_dsp: thumbv7m-none-eabi with these flags has no DSP instructions"),
-    ("--cfg stereopsis_vectors", "stereopsis_vectors: thumbv7m-none-eabi with these flags has no vectors"),
+const REFUSED: [(&str, &str, &str); 3] = [
+    ("thumbv7m-none-eabi", "dsp", "thumbv7m-none-eabi with these flags has no DSP instructions"),
+    ("thumbv7m-none-eabi", "vectors", "thumbv7m-none-eabi with these flags has no vectors"),
+    ("thumbv6m-none-eabi", "thumb2", "thumbv6m-none-eabi has no Thumb-2 instructions"),
 ];
 
 /// All targets with all features, then the features one by one.
@@ -70,12 +71,13 @@ pub fn folder() -> PathBuf {
 }
 
 fn refusals() -> Outcome {
-    for (flags, said) in REFUSED {
-        let mut check = check("", &["--target", "thumbv7m-none-eabi"]);
-        let output = check.env("RUSTFLAGS", flags).output();
+    for (target, name, said) in REFUSED {
+        let mut check = check("", &["--target", target]);
+        let output = check.env("RUSTFLAGS", format!("--cfg stereopsis_{name}")).output();
         let output = output.map_err(|e| Failure::new(format!("cargo: {e}")))?;
-        if output.status.success() || !String::from_utf8_lossy(&output.stderr).contains(said) {
-            return Err(Failure::new(format!("{flags} for thumbv7m-none-eabi is not refused as \"{said}\"")));
+        let said = format!("stereopsis_{name}: {said}");
+        if output.status.success() || !String::from_utf8_lossy(&output.stderr).contains(&said) {
+            return Err(Failure::new(format!("stereopsis_{name} for {target} is not refused as \"{said}\"")));
         }
     }
     Ok(())

@@ -1,8 +1,8 @@
 //! The instructions that the dense path runs on: the choice among targets, and nothing else.
 //!
 //! * `isa`: what the stages ask of a target. `parameters`, `work`: what they hand to it.
-//! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors. `plain`: the target
-//!   that has no more than that.
+//! * `portable`: all of it in plain Rust; bit planes and words for cores without vectors, for a Cortex-M3
+//!   with the loops along paths in assembly. `plain`: the target that has no more than that.
 //! * `simd`: vectors of 64-bit processors, and of WebAssembly with SIMD128.
 //! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), where build.rs finds them.
 //! * `mve`: the vectors of a Cortex-M55, likewise.

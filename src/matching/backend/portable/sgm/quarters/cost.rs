@@ -5,27 +5,16 @@
 
 use super::columns::words;
 use super::lanes::splat;
-use super::others::{NUMBERS, Others, gather};
+use super::others::{Costs, NUMBERS, Others, gather};
 use super::rounds;
 use super::steps::margin;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
-use crate::matching::backend::portable::sgm::features::{Features, Looks};
+use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view_mut;
 use core::cell::Cell;
-
-/// What a row's costs are made with.
-pub(super) struct Costs<'a> {
-    pub left: Looks<'a>,
-    /// Words of a column, in fours.
-    pub rounds: usize,
-    /// The most that a cost may be, in all lanes.
-    pub most: u32,
-    /// What an agreement has more in memory, in all lanes.
-    pub margin: u32,
-}
 
 /// Adds a row. There is room for so many groups of right pixels, more than a column has words.
 #[inline(never)]

@@ -1,9 +1,10 @@
-//! What right pixels look like, in the order in which columns have them as candidates.
+//! What costs are made of: right pixels, in the order of the candidates in a column, and left ones.
 
 use super::columns::FOUR;
 use super::lanes::{ONE, TOP};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
+use crate::matching::backend::portable::sgm::features::Looks;
 use crate::matching::memory::slices::part;
 
 /// What four right pixels look like that are the candidates of a word: the least gradient along the line
@@ -12,6 +13,17 @@ use crate::matching::memory::slices::part;
 pub(super) type Others = [u32; NUMBERS];
 /// How many numbers that is.
 pub(super) const NUMBERS: usize = 5;
+
+/// What a row's costs are made with.
+pub(super) struct Costs<'a> {
+    pub left: Looks<'a>,
+    /// Words of a column, in fours.
+    pub rounds: usize,
+    /// The most that a cost may be, in all lanes.
+    pub most: u32,
+    /// What an agreement has more in memory, in all lanes.
+    pub margin: u32,
+}
 
 /// What is turned of each.
 const TURNED: Others = [TOP, !TOP, 0, 0, 0];

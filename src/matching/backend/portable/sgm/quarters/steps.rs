@@ -62,7 +62,7 @@ impl Steps {
     pub fn of(&self, change: u8) -> Change {
         // The first edge is no greater than the second.
         let [more, much] = self.edges.map(|edge| usize::from(u32::from(change) >= edge));
-        self.changes[more + much & 3]
+        self.changes[(more + much) & 3]
     }
 }
 

@@ -1,15 +1,16 @@
 //! What is done to each word of a pixel's columns, four words in a round: all the instructions that grow with
 //! the number of disparities.
 //!
-//! Arm's Thumb-2 without instructions on bytes (Cortex-M3) has its rounds in assembly, which is less than half
-//! of the code: the compiler puts a third of what a round holds on the stack, if it does not unroll it.
+//! A Cortex-M3, whose registers do not suffice for what the compiler makes of a round, has them in assembly.
 
-#[cfg(any(not(stereopsis_thumb2), test))]
+#[allow(dead_code, reason = "a Cortex-M3 has all of it itself")]
 mod plain;
 #[cfg(stereopsis_thumb2)]
 mod thumb2;
 
 #[cfg(not(stereopsis_thumb2))]
-pub(super) use plain::{along, average_two, down, enter, winner};
+use plain as chosen;
 #[cfg(stereopsis_thumb2)]
-pub(super) use thumb2::{along, average_two, down, enter, winner};
+use thumb2 as chosen;
+
+pub(super) use chosen::{along, average_two, down, enter, winner};

@@ -3,11 +3,10 @@
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
-use crate::matching::backend::portable::sgm::quarters::cost::Costs;
 use crate::matching::backend::portable::sgm::quarters::lanes::{
     TOP, average, least_of_four, lesser, over, splat, up_to_top,
 };
-use crate::matching::backend::portable::sgm::quarters::others::Others;
+use crate::matching::backend::portable::sgm::quarters::others::{Costs, Others};
 use crate::matching::backend::portable::sgm::quarters::steps::{Change, Steps, beside};
 use crate::matching::memory::slices::{chunks_mut, part};
 use crate::matching::memory::views::view;
@@ -76,7 +75,7 @@ fn ones(bits: u32) -> u32 {
 }
 
 /// Takes a path along the row: from a column into another one, or into the same, of a pixel that has these
-/// costs, where the brightness changes by so much. Returns the least of the path, whose `least` was handed in,
+/// costs, where the brightness changes by so much. Returns the least of the path, whose `least` is handed in,
 /// and what a jump costs.
 #[inline(always)]
 pub fn along(
@@ -245,7 +244,7 @@ mod tests {
     #[test]
     fn agreements_are_those_of_the_definition() {
         for (a, b) in (0..128u32).flat_map(|a| (0..128).map(move |b| (a, b))) {
-            let [low, high] = [b.min(a ^ 5).min(20), b.min(30).max(20)];
+            let [low, high] = [b.min(a ^ 5).min(20), b.clamp(20, 30)];
             let along = a % 41;
             let pixel = Pixel {
                 along: splat(along),
@@ -263,7 +262,7 @@ mod tests {
             ];
             let expected = |across: u32| {
                 let rest = low.saturating_sub(along).max(along.saturating_sub(high));
-                let cost = 2 * rest + a.abs_diff(across) + a.abs_diff(b) / 4 + (a ^ 2 * b).count_ones();
+                let cost = 2 * rest + a.abs_diff(across) + a.abs_diff(b) / 4 + (a ^ (2 * b)).count_ones();
                 127u32.saturating_sub(cost)
             };
             let [same, other] = [a, b].map(expected);

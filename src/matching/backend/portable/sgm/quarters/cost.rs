@@ -47,7 +47,7 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
             gather::<S>(right, count, x + words - 1, words, part_mut(&mut others, words..));
             first = 1;
         }
-        let pixels = (GROUPS + 1 - first).saturating_sub(words).clamp(1, width - x);
+        let pixels = (GROUPS + 1 - first).saturating_sub(words).max(1).min(width - x);
         let columns = part_mut(columns, x * words..(x + pixels) * words);
         rounds::enter::<S>(&costs, x, part(&others, first..), columns);
         (x, first) = (x + pixels, first + pixels);

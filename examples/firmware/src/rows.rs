@@ -4,6 +4,7 @@
 
 use crate::host::{HostError, HostFile};
 use core::ffi::CStr;
+use heapless::Vec;
 use stereopsis::matching::Row;
 
 /// The file, in the emulator's working directory.
@@ -38,15 +39,14 @@ impl Rows {
     pub fn write(&mut self, row: &Row<'_>) -> Result<(), HostError> {
         let mut pixels = row.disparities().iter().zip(row.flags());
         for _ in 0..pixels.len().div_ceil(PIXELS) {
-            let mut bytes = [[0; BYTES]; PIXELS];
-            let count = pixels.len().min(PIXELS);
-            for (to, (disparity, flags)) in bytes.iter_mut().zip(pixels.by_ref()) {
+            let mut bytes = Vec::<u8, { BYTES * PIXELS }>::new();
+            for (disparity, flags) in pixels.by_ref().take(PIXELS) {
                 let [low, high] = disparity.raw().to_le_bytes();
-                *to = [low, high, flags.bits()];
+                // There is room for so many pixels.
+                bytes.extend([low, high, flags.bits()]);
             }
-            let bytes = bytes.as_flattened().get(..count * BYTES).unwrap_or_default();
             self.crc = bytes.iter().fold(self.crc, |crc, &byte| with_byte(crc, byte));
-            self.file.write(bytes)?;
+            self.file.write(&bytes)?;
         }
         self.count += 1;
         Ok(())

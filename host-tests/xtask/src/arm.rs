@@ -86,8 +86,9 @@ pub fn run() -> Outcome {
     parallel::work(arms, |arm| arm.run()).map(drop)
 }
 
-/// The crate's own tests that are run: of features, and of what is done to each word along paths.
-const OWN: &[&str] = &["features", "rounds"];
+/// The crate's own tests that are run: of features, of what is done to each word along paths, and of
+/// assembly beside plain Rust.
+const OWN: &[&str] = &["features", "rounds", "armv7em"];
 
 impl Arm {
     /// The tests of kernels and the crate's own, each with which of them are run.

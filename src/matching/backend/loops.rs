@@ -1,5 +1,8 @@
 //! Loops that the compiler leaves as they are written, and functions that it compiles once.
 
+use crate::matching::memory::views::{Plain, view_mut};
+use crate::units::Disparity;
+
 /// Whether this is a microcontroller with vectors, of which the compiler makes use.
 pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
 
@@ -37,6 +40,22 @@ pub(in crate::matching) fn fill_row<T: Copy>(row: &mut [T], number: T) {
     }
 }
 
+/// Copies a row to another one of its length, four numbers at a time.
+#[inline(always)]
+pub(in crate::matching) fn copy_row<T: Copy>(from: &[T], to: &mut [T]) {
+    debug_assert_eq!(from.len(), to.len(), "copied to a row of another length");
+    let (groups, rest) = to.as_chunks_mut::<4>();
+    let (from, from_rest) = from.as_chunks();
+    for (to, from) in groups.iter_mut().zip(from) {
+        keep_loop();
+        *to = *from;
+    }
+    for (to, from) in rest.iter_mut().zip(from_rest) {
+        keep_loop();
+        *to = *from;
+    }
+}
+
 /// Functions that are part of their caller where that is compiled with a kernel's vectors, and elsewhere are
 /// compiled once, for all methods and numbers of disparities.
 macro_rules! once_without_vectors {
@@ -47,3 +66,23 @@ macro_rules! once_without_vectors {
     )*};
 }
 pub(in crate::matching) use once_without_vectors;
+
+/// Makes every byte of a row's numbers the same one. On 32-bit cores the compiler's own routines take a
+/// kilobyte of flash.
+#[inline(always)]
+pub(in crate::matching) fn fill_bytes<T: Plain>(row: &mut [T], byte: u8) {
+    fill_all(view_mut(row), byte);
+}
+
+/// Leaves no answer in a row.
+#[inline(always)]
+pub(in crate::matching) fn empty_row(answers: &mut [Disparity]) {
+    const { assert!(Disparity::NONE.raw() == u16::from_le_bytes([u8::MAX; 2])) };
+    fill_bytes(answers, u8::MAX);
+}
+
+once_without_vectors! {
+    fn fill_all(bytes: &mut [u8], byte: u8) {
+        fill_row(bytes, byte);
+    }
+}

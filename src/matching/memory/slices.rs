@@ -36,13 +36,6 @@ pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut 
     slice.split_at_mut_checked(place).unwrap_or_default()
 }
 
-/// Copies numbers, as many as both have.
-#[inline(always)]
-pub(in crate::matching) fn copy<T: Copy>(from: &[T], to: &mut [T]) {
-    debug_assert_eq!(from.len(), to.len(), "copied to a place of another size");
-    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
-}
-
 /// The least multiple of `TO` that is not less.
 #[inline(always)]
 pub(in crate::matching) const fn multiple_of<const TO: usize>(number: usize) -> usize {
@@ -72,7 +65,5 @@ mod tests {
         part_mut(&mut numbers, 3..).fill(9);
         let (first, rest) = split_mut(&mut numbers, 2);
         assert_eq!((&*first, &*rest), (&[1, 2][..], &[3, 9, 9][..]));
-        copy(&[7, 8, 6], rest);
-        assert_eq!(numbers, [1, 2, 7, 8, 6]);
     }
 }

@@ -10,11 +10,12 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
+use crate::matching::backend::loops::copy_row;
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
 use crate::matching::memory::rings::{row as slot, row_mut};
-use crate::matching::memory::slices::{chunks_mut, copy, part, part_mut, split_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Select, Unique};
 use crate::matching::memory::workspace::{ForWinners, RowWorkspace};
@@ -256,7 +257,7 @@ fn select<S: SgmParameters, const MOST: usize>(
         if has_noise {
             smooth(left, 2, kept);
         } else if let Some(line) = left[2].get(..kept.len()) {
-            copy(line, kept);
+            copy_row(line, kept);
         }
     }
 }

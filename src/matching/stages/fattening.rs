@@ -11,6 +11,7 @@
 //! makes few of them. The work is the same for every picture.
 
 use crate::imaging::Noise;
+use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
@@ -28,7 +29,7 @@ pub(super) const fn least_gradient(noise: Noise) -> u16 {
 
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    frame.edges.fill(0);
+    fill_bytes(frame.edges, 0);
 }
 
 /// Takes the edges of the row that comes in; below the image there are none.

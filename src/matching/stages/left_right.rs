@@ -6,6 +6,7 @@
 //! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
 //! own winners. The work is the same for every row.
 
+use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
 use crate::matching::config::Config;
 use crate::matching::memory::slices::{part, split_mut};
@@ -35,9 +36,9 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     let width = answers.len();
     let begin = usize::from(config.min_disparity).min(width);
     let (outside, answers) = split_mut(answers, begin);
-    outside.fill(Disparity::NONE);
+    empty_row(outside);
     let (outside, flags) = split_mut(flags, begin);
-    outside.fill(PixelFlags::OUTSIDE);
+    fill_bytes(outside, PixelFlags::OUTSIDE.bits());
     let rules = &rules;
     if S::EXTERNAL_WINNERS {
         answer_records::<S>(part(view(frame.codes), begin..), rules, answers, flags);
@@ -58,6 +59,7 @@ fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [Pi
     let columns = usize::from(config.disparities);
     let mut end = Disparity::from_pixels(config.min_disparity).raw();
     for (answer, flags) in answers.iter_mut().zip(flags).take(columns) {
+        keep_scalar_loop();
         let is_end = answer.raw() == end;
         *flags = flags.union(PixelFlags::CEILING.when(is_end));
         *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(is_end) & refused));

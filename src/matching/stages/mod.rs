@@ -61,6 +61,7 @@ pub(super) mod mask;
 mod traced;
 
 use super::backend::BY_CAPACITY;
+use super::backend::loops::fill_bytes;
 use super::memory::Rows5;
 use super::method::{Block, External, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
 
@@ -111,7 +112,7 @@ external_steps!(Fast, Block, SgmLean, Sgm, SgmEdge);
 /// Forgets the frame before.
 #[inline(never)]
 pub(super) fn begin(mut frame: Frame<'_>) {
-    frame.columns.fill(0);
+    fill_bytes(frame.columns, 0);
     texture::begin(&mut frame);
     fattening::begin(&mut frame);
     open::begin(&mut frame);

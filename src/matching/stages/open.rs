@@ -18,7 +18,7 @@
 use super::confidence::has_margin;
 use super::fattening::least_gradient;
 use crate::matching::backend::Isa;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{fill_bytes, keep_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::notes::Note;
 use crate::matching::memory::slices::{part, part_mut};
@@ -42,7 +42,7 @@ const MORE: u32 = 0x400;
 /// Forgets the frame before: above the first row all is open.
 pub(super) fn begin(frame: &mut Frame<'_>) {
     let bytes = words(frame.width).min(frame.blocks.len());
-    part_mut(frame.blocks, ..bytes).fill(u8::MAX);
+    fill_bytes(part_mut(frame.blocks, ..bytes), u8::MAX);
 }
 
 /// Takes row `y` of the left image, whose edges are in; below the image all stays as it is.

@@ -15,7 +15,7 @@ use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
 use crate::matching::backend::Isa;
-use crate::matching::backend::loops::{HAS_VECTORS, keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{HAS_VECTORS, fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
@@ -48,7 +48,7 @@ fn is_asked<S: Method>(frame: &Frame<'_>) -> bool {
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
     let bytes = words(frame.width).min(frame.blocks.len());
-    part_mut(frame.blocks, bytes..).fill(0);
+    fill_bytes(part_mut(frame.blocks, bytes..), 0);
 }
 
 /// Takes row `y` of the left image; below the image all stays as it is.

@@ -11,16 +11,16 @@
 //! Support only grows downwards: where it is enough, it is enough for all rows above that the surface goes on
 //! from. Two bits a row say all that is to be kept of those, in one word with the support so far.
 
+use crate::matching::backend::loops::{empty_row, fill_bytes};
 use crate::matching::backend::{Isa, SpeckleWork};
 use crate::matching::memory::rings::{above, waiting};
 use crate::matching::method::Frame;
-use crate::units::Disparity;
 
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    frame.support.fill(0);
+    fill_bytes(frame.support, 0);
     // The row above the first one.
-    frame.band.row_mut(above(0)).fill(Disparity::NONE);
+    empty_row(frame.band.row_mut(above(0)));
 }
 
 /// Drops the answers of the row that waits which too few others support.
@@ -44,6 +44,6 @@ pub(super) fn drop_speckle(frame: &mut Frame<'_>, newest: usize) {
 
 /// Says that row `newest` is below the image: no surface goes on there.
 pub(super) fn end_surfaces(frame: &mut Frame<'_>, newest: usize) {
-    frame.band.row_mut(newest).fill(Disparity::NONE);
+    empty_row(frame.band.row_mut(newest));
     frame.workspace.skip_row();
 }

@@ -5,7 +5,7 @@
 //! column.
 
 use crate::matching::backend::MethodParameters;
-use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::config::Checks;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
@@ -14,8 +14,8 @@ use crate::units::PixelFlags;
 
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    frame.texture.fill(0);
-    frame.textured.fill(0);
+    fill_bytes(frame.texture, 0);
+    fill_bytes(frame.textured, 0);
 }
 
 /// Takes the texture of the row that comes in.

@@ -10,9 +10,10 @@
 //!                       too many as well
 //! ```
 
-use super::tables::{self, make, make_equal};
+use super::tables::{self, make_beside};
 use super::{Rows, rows};
 use crate::dsp::{ONE, add};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{part, part_mut};
@@ -41,7 +42,7 @@ pub(super) fn update_fours<const STRIDE: usize, const LINE: usize>(
     }
     // The right codes alone.
     let codes = [row.enter, row.leave];
-    let rights = reversed(row, codes.map(|codes| codes.unwrap_or(&[])), HIGH, workspace);
+    let rights = reversed(row, codes.map(|codes| codes.unwrap_or(&[])), (HIGH, false), workspace);
     let rights = rights.map(|rights| view(rights));
     // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
     let words = row.stride / 4;
@@ -49,9 +50,12 @@ pub(super) fn update_fours<const STRIDE: usize, const LINE: usize>(
         let sums = part_mut(columns, outside * words..(outside + OUTSIDE) * words);
         // They are all the same, and whole steps of them.
         let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
-        sums.as_chunks_mut().0.iter_mut().for_each(|sums| *sums = [sum; STEP / 4]);
+        for sums in sums.as_chunks_mut().0 {
+            keep_loop();
+            *sums = [sum; STEP / 4];
+        }
     }
-    Plane { row, begin, lefts: codes, rights }.sum::<STRIDE, LINE, false>(tables, columns);
+    Plane { row, begin, lefts: codes, rights }.sum::<STRIDE, LINE>(false, tables, columns);
 }
 
 /// [`update_fours`] where codes have eight bits, the left ones before the right ones.
@@ -69,13 +73,16 @@ pub(super) fn update_eights<const STRIDE: usize, const LINE: usize>(
         [row.enter, row.leave].map(|codes| codes.and_then(|row| row.split_at_checked(row.len() / 2)));
     let lefts = halves.map(|row| row.map(|(left, _)| left));
     let codes = halves.map(|row| row.map_or(&[][..], |(_, right)| right));
-    let rights = reversed(row, codes, !HIGH, workspace).map(|rights| {
-        rights.iter_mut().for_each(|codes| *codes <<= 4);
-        view(rights)
-    });
-    Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE, false>(tables, columns);
-    let rights = reversed(row, codes, HIGH, workspace).map(|rights| view(rights));
-    Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE, true>(tables, columns);
+    for is_high in [false, true] {
+        // One piece of code for both.
+        keep_loop();
+        let mut rights = reversed(row, codes, (if is_high { HIGH } else { !HIGH }, is_high), workspace);
+        if !is_high {
+            rights.iter_mut().for_each(|rights| rights.iter_mut().for_each(|codes| *codes <<= 4));
+        }
+        let rights = rights.map(|rights| view(rights));
+        Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE>(is_high, tables, columns);
+    }
 }
 
 /// Four bits of each code, of the row that enters and of the one that leaves.
@@ -85,27 +92,29 @@ struct Plane<'a> {
     begin: usize,
     /// The left codes, where there is a row: the four bits are the low ones, or the high ones.
     lefts: [Option<&'a [u8]>; 2],
-    /// The right codes, reversed: the high four bits of each byte, and nothing else in it.
+    /// The right codes, reversed and one row's inverted: the high four bits of each byte, and nothing else
+    /// in it.
     rights: [&'a [u8]; 2],
 }
 
 impl Plane<'_> {
     /// Adds the costs of the low bits of codes to the columns, or takes off what those of the high bits lack.
     #[inline(always)]
-    fn sum<const STRIDE: usize, const LINE: usize, const HIGH: bool>(
+    fn sum<const STRIDE: usize, const LINE: usize>(
         &self,
+        is_high: bool,
         tables: &mut [u32],
         columns: &mut [u32],
     ) {
         let [enters, leaves] = self.lefts;
         let Some(any) = enters.or(leaves) else { return };
-        let (of_new, of_old) = (..tables::words::<LINE>(), tables::words::<LINE>()..);
+        let words = tables::words::<LINE>();
+        let table_of = |row: usize| row * words..(row + 1) * words;
         // Nothing differs in a row that is not there.
-        if enters.is_none() {
-            tables::fill(part_mut(tables, of_new), if HIGH { 4 } else { 0 });
-        }
-        if leaves.is_none() {
-            tables::fill(part_mut(tables, of_old.clone()), if HIGH { 0 } else { 4 });
+        for (row, left) in self.lefts.iter().enumerate() {
+            if left.is_none() {
+                tables::fill(part_mut(tables, table_of(row)), if is_inverted(row, is_high) { 4 } else { 0 });
+            }
         }
         let width = self.row.width;
         // Never none.
@@ -118,18 +127,16 @@ impl Plane<'_> {
             while from < width {
                 let piece = from..width.min(from + LINE - half);
                 let first = width - piece.end + chunk;
-                let [new, old] = self.rights.map(|rights| part(rights, first..));
-                if enters.is_some() {
-                    let make = if HIGH { make_equal::<LINE> } else { make::<LINE> };
-                    make(part_mut(tables, of_new), new, half, piece.len());
-                }
-                if leaves.is_some() {
-                    let make = if HIGH { make::<LINE> } else { make_equal::<LINE> };
-                    make(part_mut(tables, of_old.clone()), old, half, piece.len());
+                let (places, was_beside) = ((half, piece.len()), from > self.begin);
+                for (row, (left, right)) in self.lefts.iter().zip(self.rights).enumerate() {
+                    if left.is_some() {
+                        let table = part_mut(tables, table_of(row));
+                        make_beside::<LINE>(table, part(right, first..), places, was_beside);
+                    }
                 }
                 let codes = self.lefts.map(|codes| part(codes.unwrap_or(any), piece.clone()));
                 let columns = part_mut(columns, (OUTSIDE + from) * words..(OUTSIDE + piece.end) * words);
-                match (STRIDE, HIGH) {
+                match (STRIDE, is_high) {
                     (16, false) => rows::add_low_16::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     (32, false) => rows::add_low_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     (48, false) => rows::add_low_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
@@ -139,7 +146,7 @@ impl Plane<'_> {
                     (48, true) => rows::take_high_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     (64, true) => rows::take_high_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
                     _ => {
-                        let sum = match (half, HIGH) {
+                        let sum = match (half, is_high) {
                             (8, false) => rows::add_low_16_of::<LINE>,
                             (16, false) => rows::add_low_32_of::<LINE>,
                             (24, false) => rows::add_low_48_of::<LINE>,
@@ -159,16 +166,27 @@ impl Plane<'_> {
     }
 }
 
+/// Whether the right codes of a row, the entering one or the leaving one, are inverted, so that costs are
+/// how many bits are equal.
+fn is_inverted(row: usize, is_high: bool) -> bool {
+    (row == 1) != is_high
+}
+
 /// The right codes of both rows from the partner of the last column's first candidate back, with those of all
-/// candidates of the first column; of each the bits of a mask.
-fn reversed<'a>(row: &Rows<'_>, right: [&[u8]; 2], mask: u32, room: &'a mut [u32]) -> [&'a mut [u32]; 2] {
+/// candidates of the first column; of each the high bits or the low ones.
+fn reversed<'a>(
+    row: &Rows<'_>,
+    right: [&[u8]; 2],
+    (mask, is_high): (u32, bool),
+    room: &'a mut [u32],
+) -> [&'a mut [u32]; 2] {
     // Tables read up to seven bytes more, and pieces begin between words.
     let words = ((row.width + row.stride).div_ceil(4) + 2).min(room.len() / 2);
     let Some((new, old)) = room.split_at_mut_checked(words) else { return Default::default() };
     let last = row.width as i32 - 1 - row.min_disparity as i32;
     let mut rows = [new, part_mut(old, ..words)];
-    for (right, out) in right.into_iter().zip(&mut rows) {
-        rows::reverse(right, last, mask, out);
+    for (row, (right, out)) in right.into_iter().zip(&mut rows).enumerate() {
+        rows::reverse(right, last, mask, if is_inverted(row, is_high) { mask } else { 0 }, out);
     }
     rows
 }

@@ -98,42 +98,14 @@ fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disp
     }
 }
 
-/// One answer of [`average_back`]: 23 instructions.
-macro_rules! average_one {
-    () => {
-        concat!(
-            // How many there are after it: the first of the next surface has none before it.
-            "cmp {to}, #0\n",
-            "ldrb {to}, [{lengths}, #-1]!\n",
-            "ite ne\n",
-            "addne {from}, {from}, #1\n",
-            "moveq {from}, #0\n",
-            "add {t}, {to}, {from}\n",
-            "usat {t}, #8, {t}\n",
-            "strb {t}, [{lengths}]\n",
-            // As many to both sides.
-            "usub16 {t}, {to}, {from}\n",
-            "sel {reach}, {from}, {to}\n",
-            "usub16 {t}, {reach}, {most}\n",
-            "sel {reach}, {most}, {reach}\n",
-            "ldrh {t}, [{sums}, {reach}, lsl #1]\n",
-            "sub {u}, {sums}, {reach}, lsl #1\n",
-            "ldrh {u}, [{u}, #-2]\n",
-            "sub {sums}, {sums}, #2\n",
-            "sub {t}, {t}, {u}\n",
-            // What the others differ by, over how many they are, rounded: there is no tie.
-            "ldr {reach}, [{counts}, {reach}, lsl #2]\n",
-            "ldrh {u}, [{answers}, #-2]!\n",
-            "smlatb {t}, {reach}, {u}, {t}\n",
-            "smlabb {t}, {t}, {reach}, {half}\n",
-            "add {u}, {u}, {t}, asr #16\n",
-            "strh {u}, [{answers}]\n",
-        )
-    };
-}
-
-/// The pass back: makes every answer the average, and every length that of the whole surface. 24 instructions
-/// an answer.
+/// The pass back: makes every answer the average, and every length that of the whole surface. 44
+/// instructions for two answers.
+///
+/// ```text
+/// r0, r1      of both answers how many of their surface there are before and after, then their reaches
+/// r5, r6      the first ones, of the answer behind both
+/// r8 to r11   lengths, sums, answers, counts      r12   the reach at most, twice
+/// ```
 #[inline(never)]
 fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], radius: u8) {
     let count = answers.len();
@@ -141,30 +113,87 @@ fn average_back(answers: &mut [Disparity], lengths: &mut [u8], sums: &[u16], rad
         return;
     }
     let first = lengths.as_mut_ptr();
-    // SAFETY: from the last of `count` answers and lengths back to the first, they are read and written, two
-    // in a round but for one in the first if `count` is odd. The number `reach` is no more than how many
-    // of the surface there are before an answer, no more than how many there are after it, and no more
-    // than COUNTS has. So sums are read between the first and the one that stands `count` after it.
-    unsafe {
-        asm!(
-            "tst {t}, #1",
-            "bne 3f",
-            "2:",
-            average_one!(),
-            "3:",
-            average_one!(),
-            "cmp {lengths}, {first}",
-            "bne 2b",
-            answers = inout(reg) answers.as_mut_ptr().add(count) => _,
-            lengths = inout(reg) first.add(count) => _, first = in(reg) first,
-            // The sum up to the last.
-            sums = inout(reg) sums.as_ptr().add(count) => _,
-            counts = in(reg) COUNTS.as_ptr(),
-            most = in(reg) usize::from(radius).min(MOST),
-            half = in(reg) 1 << 15,
-            to = inout(reg) 0 => _, from = inout(reg) 0 => _,
-            reach = out(reg) _, t = inout(reg) count => _, u = out(reg) _,
-            options(nostack),
-        );
+    let most = usize::from(radius).min(MOST) as u32;
+    // Of the answer behind these: how many of its surface there are before it, and after.
+    let (mut to, mut from) = (0u32, 0u32);
+    if count > 1 {
+        // SAFETY: from the last of `count` answers and lengths back to the first two, or the second and the
+        // third, they are read and written, two in a round. A reach is no more than how many of the surface
+        // there are before an answer, no more than how many there are after it, and no more than COUNTS has.
+        // So sums are read between the first and the one that stands `count` after it. The stack and the two
+        // registers that no operand may be are left as they were.
+        unsafe {
+            asm!(
+                "push {{r4, r6, r7}}",
+                "mov r4, #1",
+                "mov r6, #0",
+                "2:",
+                // How many there are after it: the first of the next surface has none before it.
+                "cmp r5, #0",
+                "ldrb r0, [r8, #-1]",
+                "ite ne",
+                "uqadd8ne r1, r6, r4",
+                "moveq r1, #0",
+                "cmp r0, #0",
+                "ldrb r5, [r8, #-2]!",
+                "ite ne",
+                "uqadd8ne r6, r1, r4",
+                "moveq r6, #0",
+                "pkhbt r0, r5, r0, lsl #16",
+                "pkhbt r1, r6, r1, lsl #16",
+                "uqadd8 r2, r0, r1",
+                "orr r2, r2, r2, lsr #8",
+                "strh r2, [r8]",
+                // As many to both sides.
+                "usub16 r2, r0, r1",
+                "sel r0, r1, r0",
+                "usub16 r2, r0, r12",
+                "sel r0, r12, r0",
+                "lsr r1, r0, #16",
+                "uxth r0, r0",
+                "ldrh r2, [r9, r1, lsl #1]",
+                "sub r3, r9, r1, lsl #1",
+                "ldrh r3, [r3, #-2]",
+                "sub r9, r9, #2",
+                "sub r2, r2, r3",
+                "ldr r1, [r11, r1, lsl #2]",
+                "ldrh r3, [r9, r0, lsl #1]",
+                "sub r7, r9, r0, lsl #1",
+                "ldrh r7, [r7, #-2]",
+                "sub r9, r9, #2",
+                "sub r3, r3, r7",
+                "ldr r0, [r11, r0, lsl #2]",
+                // What the others differ by, over how many they are, rounded: there is no tie.
+                "ldr r7, [r10, #-4]!",
+                "smlatt r2, r1, r7, r2",
+                "smlatb r3, r0, r7, r3",
+                "smlabb r2, r2, r1, lr",
+                "smlabb r3, r3, r0, lr",
+                "pkhtb r2, r2, r3, asr #16",
+                "uadd16 r7, r7, r2",
+                "str r7, [r10]",
+                "ldr r2, [sp]",
+                "cmp r8, r2",
+                "bne 2b",
+                "mov r3, r6",
+                "pop {{r4, r6, r7}}",
+                in("r4") first.add(count % 2),
+                inout("r5") to,
+                inout("r8") first.add(count) => _,
+                // The sum up to the last.
+                inout("r9") sums.as_ptr().add(count) => _,
+                inout("r10") answers.as_mut_ptr().add(count) => _,
+                in("r11") COUNTS.as_ptr(),
+                in("r12") most * 0x1_0001,
+                in("lr") 1 << 15,
+                out("r0") _, out("r1") _, out("r2") _, out("r3") from,
+            );
+        }
+    }
+    if count % 2 == 1
+        && let Some(first) = lengths.first_mut()
+    {
+        // None is before the first answer, which so is its own average.
+        *first = if to > 0 { (from + 1).min(u8::MAX.into()) as u8 } else { 0 };
     }
 }

@@ -5,6 +5,7 @@
 //! comes back without being sorted. The last columns, fewer than four, have a half-word each.
 #![allow(unsafe_code)]
 
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::portable::speckle::ROWS;
 use crate::matching::backend::work::SpeckleWork;
 use crate::units::{Disparity, PixelFlags};
@@ -28,6 +29,7 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
         drop_speckle(lengths, answers, finished, flags, four);
     }
     for x in four..count {
+        keep_loop();
         let (Some(&here), Some(&above), Some(&length)) = (here.get(x), above.get(x), lengths.get(x)) else {
             return;
         };

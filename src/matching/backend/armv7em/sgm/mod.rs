@@ -21,6 +21,7 @@ mod rows;
 mod walk;
 mod winners;
 
+use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
@@ -41,7 +42,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
 
     #[inline(always)]
     fn clear(work: &mut PathWork<'_>) {
-        work.costs.fill(work.penalties.cost);
+        fill_bytes(work.costs, work.penalties.cost);
     }
 
     #[inline(always)]
@@ -55,7 +56,7 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
         if beyond > 0 {
             let least = beyond_search(work.penalties);
             for column in chunks_mut(work.costs, stride) {
-                part_mut(column, ..beyond).fill(least);
+                fill_bytes(part_mut(column, ..beyond), least);
             }
         }
     }

@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::blocks;
+use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::slices::part_mut;
 use crate::matching::memory::views::view_mut;
@@ -47,7 +48,7 @@ pub(super) fn select(
         // The first pixels have fewer candidates than there are lanes.
         let candidates = work.disparities.min(x + 1 - begin);
         if candidates < stride {
-            part_mut(sums, ..stride - candidates).fill(u8::MAX);
+            fill_bytes(part_mut(sums, ..stride - candidates), u8::MAX);
         }
         // SAFETY: that many words are the sums, and they stand where words may.
         let least = |sums: &[u8]| unsafe { blocks::least(sums.as_ptr().cast(), fours) };
@@ -67,7 +68,7 @@ pub(super) fn select(
             #[inline(always)]
             || {
                 let beside = lane.saturating_sub(BESIDE)..(lane + BESIDE + 1).min(stride);
-                part_mut(sums, beside).fill(u8::MAX);
+                fill_bytes(part_mut(sums, beside), u8::MAX);
                 least(sums).0
             },
         );

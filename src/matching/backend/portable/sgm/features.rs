@@ -5,7 +5,7 @@
 //! * a census of eight neighbours, wide along the line.
 
 use crate::imaging::{census_wide8, gradients};
-use crate::matching::backend::loops::{fill_row, keep_loop, once_without_vectors};
+use crate::matching::backend::loops::{fill_bytes, keep_loop, once_without_vectors};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::Rows5;
@@ -158,7 +158,7 @@ pub(in crate::matching::backend) trait FeatureRows {
     /// Fills a row with a number.
     #[inline(always)]
     fn fill(row: &mut [u8], number: u8) {
-        fill_row(row, number);
+        fill_bytes(row, number);
     }
     /// The range of one number.
     fn between(before: u8, here: u8, next: u8) -> (u8, u8);

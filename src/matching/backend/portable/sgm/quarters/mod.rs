@@ -26,6 +26,7 @@ mod winners;
 
 use super::Passes;
 use super::features::Features;
+use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
 use crate::matching::memory::winners::{Found, Unique};
@@ -40,7 +41,7 @@ impl<const WORDS: usize, const ALL: bool, const GROUPS: usize> Passes for Quarte
 
     #[inline(always)]
     fn clear(work: &mut PathWork<'_>) {
-        work.costs.fill(steps::most(work.penalties));
+        fill_bytes(work.costs, steps::most(work.penalties));
     }
 
     #[inline(always)]

@@ -56,6 +56,16 @@ pub trait Group: Copy + 'static {
     fn after(self, before: Self) -> Self;
     /// Each lane's number in the lane before it; the last one's is the first of `next`.
     fn before(self, next: Self) -> Self;
+    /// [`Self::after`] where the first lane may have `before`'s number or its own, whichever takes less.
+    #[inline(always)]
+    fn after_end(self, before: Self) -> Self {
+        self.after(before)
+    }
+    /// [`Self::before`] where the last lane may have `next`'s number or its own, whichever takes less.
+    #[inline(always)]
+    fn before_end(self, next: Self) -> Self {
+        self.before(next)
+    }
     /// The least number, in all lanes.
     fn least(self) -> Self;
 

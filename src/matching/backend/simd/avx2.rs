@@ -6,21 +6,52 @@ use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, re
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
-/// 32 bytes in a register.
+/// 32 bytes in a register; whether AVX-512's instructions on such registers are used.
 #[derive(Clone, Copy)]
 #[repr(transparent)]
-pub(in crate::matching) struct Wide(__m256i);
+pub(in crate::matching) struct Bytes32<const BY_AVX512: bool>(__m256i);
+
+/// A register of AVX2.
+pub(in crate::matching) type Wide = Bytes32<false>;
+/// The same with AVX-512's instructions.
+pub(in crate::matching) type WideByAvx512 = Bytes32<true>;
+
+/// For each lane the one before it, for the first one itself.
+pub(super) const fn lanes_before<const LANES: usize>() -> [u8; LANES] {
+    const {
+        let mut lanes = [0; LANES];
+        let mut lane = 1;
+        while lane < LANES {
+            lanes[lane] = lane as u8 - 1;
+            lane += 1;
+        }
+        lanes
+    }
+}
+
+/// For each lane the one after it, for the last one itself.
+pub(super) const fn lanes_after<const LANES: usize>() -> [u8; LANES] {
+    const {
+        let mut lanes = [LANES as u8 - 1; LANES];
+        let mut lane = 1;
+        while lane < LANES {
+            lanes[lane - 1] = lane as u8;
+            lane += 1;
+        }
+        lanes
+    }
+}
 
 /// Calls of intrinsics.
 macro_rules! safely {
     ($work:expr) => {
-        // SAFETY: only code that runs behind the proof that the processor has AVX2 is given groups of this
-        // kind; the pointers are to arrays of a register's size, without alignment.
+        // SAFETY: only code that runs behind the proof that the processor has AVX2, or AVX-512, is given
+        // groups of this kind; the pointers are to arrays of a register's size, without alignment.
         unsafe { $work }
     };
 }
 
-impl Group for Wide {
+impl<const BY_AVX512: bool> Group for Bytes32<BY_AVX512> {
     register! {
         32 bytes, load _mm256_loadu_si256, store _mm256_storeu_si256, splat _mm256_set1_epi8,
         plus _mm256_add_epi8, plus_saturating _mm256_adds_epu8,
@@ -35,6 +66,9 @@ impl Group for Wide {
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
+        if BY_AVX512 {
+            return safely!(Self(_mm256_popcnt_epi8(_mm256_xor_si256(self.0, other.0))));
+        }
         safely!({
             // The bits of a nibble, looked up.
             let bits = _mm256_setr_epi8(
@@ -66,6 +100,22 @@ impl Group for Wide {
     }
 
     #[inline(always)]
+    fn after_end(self, before: Self) -> Self {
+        if BY_AVX512 {
+            return safely!(Self(_mm256_permutexvar_epi8(Self::of(lanes_before()).0, self.0)));
+        }
+        self.after(before)
+    }
+
+    #[inline(always)]
+    fn before_end(self, next: Self) -> Self {
+        if BY_AVX512 {
+            return safely!(Self(_mm256_permutexvar_epi8(Self::of(lanes_after()).0, self.0)));
+        }
+        self.before(next)
+    }
+
+    #[inline(always)]
     fn least(self) -> Self {
         safely!({
             let half = _mm_min_epu8(_mm256_castsi256_si128(self.0), _mm256_extracti128_si256(self.0, 1));
@@ -76,7 +126,7 @@ impl Group for Wide {
     }
 }
 
-impl HalfWords for Wide {
+impl<const BY_AVX512: bool> HalfWords for Bytes32<BY_AVX512> {
     half_words! { sums _mm256_adds_epu16, differences _mm256_subs_epu16, greater _mm256_max_epu16 }
 
     #[inline(always)]
@@ -108,7 +158,7 @@ impl HalfWords for Wide {
     }
 }
 
-impl Wide {
+impl<const BY_AVX512: bool> Bytes32<BY_AVX512> {
     /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
     fn last_lane_of(cells: &[Self], number: Self) -> usize {

@@ -17,7 +17,9 @@ pub(super) fn update<S: WindowParameters, G: Group, const CELLS: usize, const SL
     let candidates = |row: RowCodes<'_>| Candidates::<G, CELLS, SLIDES>::new(row.right, stride);
     match (enter, leave) {
         (Some(enter), Some(leave)) => {
-            let (mut news, mut olds) = (candidates(enter), candidates(leave));
+            // One is moved in registers, the other read anew: a processor does both at a time.
+            let mut news = candidates(enter);
+            let mut olds = Candidates::<G, CELLS, false>::new(leave.right, stride);
             let rows = pixels(enter, stride).zip(pixels(leave, stride));
             for (column, ((&new_code, new), (&old_code, old))) in columns.zip(rows) {
                 let (more, less) = (key::<S, G>(new_code), key::<S, G>(old_code));

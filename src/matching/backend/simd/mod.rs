@@ -42,7 +42,7 @@ use neon::Vector;
 use simd128::Vector;
 #[cfg(target_arch = "x86_64")]
 use sse2::Vector;
-use x86::{Avx2, Avx512, Wide, Widest};
+use x86::{Avx2, Avx512, Wide, WideByAvx512, Widest};
 
 use super::isa::Isa;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};

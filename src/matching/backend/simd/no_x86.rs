@@ -1,6 +1,6 @@
 //! What stands for the vectors of x86-64 on other processors: kernels that no processor has.
 
-pub(super) use super::{Vector as Wide, Vector as Widest};
+pub(super) use super::{Vector as Wide, Vector as WideByAvx512, Vector as Widest};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::WindowWork;
 use crate::matching::memory::winners::Select;

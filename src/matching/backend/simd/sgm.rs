@@ -2,7 +2,7 @@
 //! For the usual numbers of disparities that is known when the crate is compiled, which lets the compiler
 //! unroll them and keep them in registers.
 
-use super::{Backend, Vector, Wide, Widest};
+use super::{Backend, Vector, Wide, WideByAvx512, Widest};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::portable::sgm;
@@ -54,8 +54,10 @@ macro_rules! in_widest {
             64 => pass!([$avx512.run] $pass $more $arguments, Widest, 1, true),
             128 => pass!([$avx512.run] $pass $more $arguments, Widest, 2, true),
             stride if stride % 64 == 0 => pass!([$avx512.run] $pass $more $arguments, Widest, 4, false),
-            32 => pass!([$avx512.run] $pass $more $arguments, Wide, 1, true),
-            stride if stride % 32 == 0 => pass!([$avx512.run] $pass $more $arguments, Wide, 8, false),
+            32 => pass!([$avx512.run] $pass $more $arguments, WideByAvx512, 1, true),
+            stride if stride % 32 == 0 => {
+                pass!([$avx512.run] $pass $more $arguments, WideByAvx512, 8, false)
+            }
             _ => pass!([$avx512.run] $pass $more $arguments, Vector, MOST, false),
         }
     };

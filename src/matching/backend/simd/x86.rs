@@ -1,10 +1,11 @@
 //! Windows in the registers of AVX2 and AVX-512, unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
-pub(super) use super::avx2::Wide;
+pub(super) use super::avx2::{Wide, WideByAvx512};
 pub(super) use super::avx512::Widest;
 use super::windows;
 use crate::matching::backend::parameters::WindowParameters;
+use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::work::WindowWork;
 use crate::matching::memory::winners::Select;
 use core::arch::x86_64::__cpuid;
@@ -119,22 +120,23 @@ fn run_512(work: impl FnOnce()) {
 #[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 fn row_512<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
-        64 => in_widest::<S, 1, true>(work, select),
-        128 => in_widest::<S, 2, true>(work, select),
-        256 => in_widest::<S, 4, true>(work, select),
-        stride if stride % 64 == 0 => in_widest::<S, 4, false>(work, select),
+        32 => in_groups::<S, WideByAvx512, 1, true>(work, select),
+        64 => in_groups::<S, Widest, 1, true>(work, select),
+        128 => in_groups::<S, Widest, 2, true>(work, select),
+        256 => in_groups::<S, Widest, 4, true>(work, select),
+        stride if stride % 64 == 0 => in_groups::<S, Widest, 4, false>(work, select),
         _ => row::<S>(work, select),
     }
 }
 
-/// [`in_wide`] in registers of AVX-512.
+/// [`in_wide`] with AVX-512's instructions.
 #[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
 #[inline(never)]
-fn in_widest<S: WindowParameters, const CELLS: usize, const ALL: bool>(
+fn in_groups<S: WindowParameters, G: Group, const CELLS: usize, const ALL: bool>(
     work: WindowWork<'_>,
     select: Option<Select<'_>>,
 ) {
-    windows::row::<S, Widest, CELLS, ALL>(work, select);
+    windows::row::<S, G, CELLS, ALL>(work, select);
 }
 
 #[cfg(test)]

@@ -26,10 +26,12 @@ pub(super) fn enter<G: Group, S: SgmParameters, const CELLS: usize, const ALL: b
     let ranges = least.windows(stride).zip(greatest.windows(stride));
     let pixels = left.brightness.iter().zip(left.across.iter().zip(left.census));
     let pixels = left.along.iter().zip(pixels);
-    let new = |row| Candidates::<G, CELLS, ALL>::new(row, stride);
-    let (mut along_row, mut brightness_row) = (new(alongs), new(brightnesses));
-    let (mut across_row, mut census_row) = (new(acrosses), new(censuses));
-    let (mut least_row, mut greatest_row) = (new(least), new(greatest));
+    // Some rows are moved in registers, the others read anew: a processor does both at a time.
+    let moved = |row| Candidates::<G, CELLS, ALL>::new(row, stride);
+    let read = |row| Candidates::<G, CELLS, false>::new(row, stride);
+    let (mut along_row, mut brightness_row) = (moved(alongs), read(brightnesses));
+    let (mut across_row, mut census_row) = (read(acrosses), read(censuses));
+    let (mut least_row, mut greatest_row) = (moved(least), moved(greatest));
     for (((column, candidates), range), (&along, (&brightness, (&across, &census)))) in
         columns.zip(candidates).zip(ranges).zip(pixels)
     {

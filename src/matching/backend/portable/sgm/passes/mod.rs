@@ -155,16 +155,18 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
         );
         let least = least.least();
         let (step, jump) = (G::of(change[0]), least.plus(G::of(change[1])));
-        let (mut before, mut here) = (steps.far, self.0.first().copied().unwrap_or(steps.far));
+        let (mut before, mut here) = (None, self.0.first().copied().unwrap_or(steps.far));
         for (i, &cost) in costs.iter().enumerate().take(CELLS) {
-            let next =
-                if i + 1 < costs.len() { self.0.get(i + 1).copied().unwrap_or(steps.far) } else { steps.far };
-            let beside = here.after(before).min(here.before(next)).plus(step);
+            let next = if i + 1 < costs.len() { self.0.get(i + 1).copied() } else { None };
+            // At an end of the column a candidate may stand beside itself: a step from there is no cheaper.
+            let above = before.map_or(here.after_end(steps.far), |before| here.after(before));
+            let below = next.map_or(here.before_end(steps.far), |next| here.before(next));
+            let beside = above.min(below).plus(step);
             let message = here.min(beside).min(jump).minus(least);
             if let Some(cell) = self.0.get_mut(i) {
                 *cell = message.plus(G::of(cost));
             }
-            (before, here) = (here, next);
+            (before, here) = (Some(here), next.unwrap_or(steps.far));
         }
         self
     }

@@ -97,8 +97,9 @@ impl Filling {
     /// Adds the pixels that count of four without a flag that leaves them out.
     #[inline(always)]
     fn take_four(&mut self, &[a, _, _, b]: &[Disparity; 4]) {
-        // What is near to less than this is an answer.
-        const SOME: u16 = Disparity::NONE.raw() - Disparity::ONE;
+        // What is near to less than this is an answer; a number that an instruction of Arm's can hold.
+        const SOME: u16 = 0xff00;
+        const { assert!(SOME < Disparity::NONE.raw() - Disparity::ONE) };
         let [first, _] = &mut self.0;
         let joins = are_near(a.raw(), first.last) || first.is_empty();
         if b.raw() < SOME && are_near(b.raw(), a.raw()) && joins {
@@ -168,7 +169,8 @@ pub(super) fn fill(
 // Apart, so that the loop has all registers.
 #[inline(never)]
 fn fill_fours(cells: &mut [Filling], disparities: &[Disparity], flags: &[PixelFlags]) -> u8 {
-    const LEFT_OUT_4: u32 = 0x0100_0001 * LEFT_OUT.bits() as u32;
+    // Of all four, though two count: such a number an instruction of Arm's can hold.
+    const LEFT_OUT_4: u32 = 0x0101_0101 * LEFT_OUT.bits() as u32;
     let pixels = disparities.as_chunks::<4>().0.iter().zip(flags.as_chunks::<4>().0);
     let mut all = 0;
     for (cell, (disparities, flags)) in cells.iter_mut().zip(pixels) {

@@ -42,8 +42,10 @@ impl Rows {
             let mut bytes = Vec::<u8, { BYTES * PIXELS }>::new();
             for (disparity, flags) in pixels.by_ref().take(PIXELS) {
                 let [low, high] = disparity.raw().to_le_bytes();
-                // There is room for so many pixels.
-                bytes.extend([low, high, flags.bits()]);
+                for byte in [low, high, flags.bits()] {
+                    // There is room for so many pixels.
+                    let _ = bytes.push(byte);
+                }
             }
             self.crc = bytes.iter().fold(self.crc, |crc, &byte| with_byte(crc, byte));
             self.file.write(&bytes)?;

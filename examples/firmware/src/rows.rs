@@ -42,10 +42,8 @@ impl Rows {
             let mut bytes = Vec::<u8, { BYTES * PIXELS }>::new();
             for (disparity, flags) in pixels.by_ref().take(PIXELS) {
                 let [low, high] = disparity.raw().to_le_bytes();
-                for byte in [low, high, flags.bits()] {
-                    // There is room for so many pixels.
-                    let _ = bytes.push(byte);
-                }
+                // There is room for so many pixels.
+                let _ = bytes.extend_from_slice(&[low, high, flags.bits()]);
             }
             self.crc = bytes.iter().fold(self.crc, |crc, &byte| with_byte(crc, byte));
             self.file.write(&bytes)?;

@@ -9,9 +9,9 @@
 //! * `windows`: columns into windows, windows into winners.
 //! * `rows`: the right codes from right to left, and the loops of both over the pixels of a row, in assembly
 //!   for the usual numbers of candidates.
-//! * `left_right`: winners into answers; `fattening`: those refused that spread; `smooth`: these averaged;
-//!   `speckle`: their support counted, which all methods share; `vertical`: answers averaged down the
-//!   columns; `fill`: small gaps closed.
+//! * `left_right`, `answers`: winners into answers; `fattening`: those refused that spread; `smooth`: these
+//!   averaged; `speckle`: their support counted, which all methods share; `vertical`: answers averaged down
+//!   the columns; `fill`: small gaps closed.
 //! * `sgm`: costs along paths.
 //!
 //! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels
@@ -23,6 +23,7 @@
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the
 //! search.
 
+mod answers;
 mod census;
 mod columns;
 mod fattening;
@@ -107,7 +108,7 @@ impl Isa for Backend {
         let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
         let winners = part(winners.words(), begin..);
         left_right::offer(winners, right);
-        left_right::answer::<P>(winners, right, rules, answers, flags);
+        answers::answer::<P>(winners, right, rules, answers, flags);
     }
 
     #[inline(always)]

@@ -13,7 +13,7 @@ pub(in crate::matching) struct Bytes32<const BY_AVX512: bool>(__m256i);
 
 /// A register of AVX2.
 pub(in crate::matching) type Wide = Bytes32<false>;
-/// The same with AVX-512's instructions.
+/// A register of AVX2 with AVX-512's instructions.
 pub(in crate::matching) type WideByAvx512 = Bytes32<true>;
 
 /// For each lane the one before it, for the first one itself.

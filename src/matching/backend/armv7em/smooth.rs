@@ -1,7 +1,8 @@
 //! The surfaces along a row, and answers averaged within them: what `surface/runs.rs` does.
 #![allow(unsafe_code)]
 
-use crate::matching::backend::portable::smooth::RECIPROCALS;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::smooth::{RECIPROCALS, of_one};
 use crate::units::Disparity;
 use core::arch::asm;
 
@@ -37,62 +38,62 @@ pub(super) fn smooth(
     average_back(answers, lengths, sums, radius);
 }
 
-/// One answer of [`count`]: 10 instructions.
-macro_rules! count_one {
-    ($here:literal, $before:literal) => {
-        concat!(
-            "ldrh {",
-            $here,
-            "}, [{answers}], #2\n",
-            "sub {t}, {",
-            $here,
-            "}, {",
-            $before,
-            "}\n",
-            "add {t}, {t}, {step}\n",
-            "cmp {t}, {step}, lsl #1\n",
-            "ite ls\n",
-            "uqadd8ls {length}, {length}, {one}\n",
-            "movhi {length}, #0\n",
-            "strb {length}, [{lengths}], #1\n",
-            "add {sum}, {sum}, {",
-            $here,
-            "}\n",
-            "strh {sum}, [{sums}, #2]!\n",
-        )
-    };
-}
-
 /// The pass to the right: for every answer how many of its surface there are before it, and the sum of all
-/// raw disparities up to it, modulo 2^16, after one for none. 11 instructions an answer.
+/// raw disparities up to it, modulo 2^16, after one for none. 19 instructions for two answers.
 #[inline(never)]
 fn count(answers: &[Disparity], lengths: &mut [u8], sums: &mut [u16], step: Disparity) {
-    let count = answers.len();
-    if count == 0 || lengths.len() < count || sums.len() < count + 1 {
+    let (mut sum, mut length, mut before) = (0u16, 0u8, None);
+    let Some((none, sums)) = sums.split_first_mut() else { return };
+    *none = sum;
+    let count = answers.len().min(lengths.len()).min(sums.len());
+    // What is left after the first one or two are whole pairs.
+    let first = if count % 2 == 1 { 1 } else { 2 };
+    for ((answer, out), sum_up_to) in answers.iter().zip(lengths.iter_mut()).zip(sums.iter_mut()).take(first)
+    {
+        keep_loop();
+        let is_near = before.is_some_and(|before| of_one(answer.raw(), before, step));
+        length = if is_near { length + 1 } else { 0 };
+        sum = sum.wrapping_add(answer.raw());
+        before = Some(answer.raw());
+        (*out, *sum_up_to) = (length, sum);
+    }
+    if count <= first {
         return;
     }
-    // No answer is near what stands before the row.
-    let before = u32::MAX / 2;
-    // SAFETY: `count` answers are read, two in a round but for one in the first if `count` is odd; as many
-    // lengths are written, and a sum more.
+    // SAFETY: from the answer before the first pair to the last one they are read, two and two, and for each
+    // of the pairs two lengths and sums are written: `count` there are of all three.
     unsafe {
         asm!(
-            "strh {sum}, [{sums}]",
-            "tst {t}, #1",
-            "bne 3f",
             "2:",
-            count_one!("a", "b"),
-            "3:",
-            count_one!("b", "a"),
+            // Two answers, and those before them.
+            "ldr {t}, [{answers}, #-2]",
+            "ldr {two}, [{answers}], #4",
+            "uxtah {u}, {sum}, {two}",
+            "uxtah {sum}, {u}, {two}, ror #16",
+            "pkhbt {u}, {u}, {sum}, lsl #16",
+            "str {u}, [{sums}], #4",
+            // Which ones are near.
+            "uqsub16 {u}, {two}, {t}",
+            "uqsub16 {t}, {t}, {two}",
+            "orr {t}, {t}, {u}",
+            "usub16 {t}, {step}, {t}",
+            "sel {t}, {one}, {zero}",
+            // Others begin anew.
+            "uqadd8 {u}, {length}, {one}",
+            "smulbb {u}, {u}, {t}",
+            "uqadd8 {length}, {u}, {one}",
+            "smulbt {length}, {length}, {t}",
+            "orr {u}, {u}, {length}, lsl #8",
+            "strh {u}, [{lengths}], #2",
             "cmp {answers}, {end}",
             "bne 2b",
-            answers = inout(reg) answers.as_ptr() => _, end = in(reg) answers.as_ptr().add(count),
-            lengths = inout(reg) lengths.as_mut_ptr() => _,
-            sums = inout(reg) sums.as_mut_ptr() => _,
-            sum = inout(reg) 0 => _,
-            length = inout(reg) 0 => _,
-            a = inout(reg) before => _, b = inout(reg) before => _,
-            step = in(reg) u32::from(step.raw()), one = in(reg) 1, t = inout(reg) count => _,
+            answers = inout(reg) answers.as_ptr().add(first) => _, end = in(reg) answers.as_ptr().add(count),
+            lengths = inout(reg) lengths.as_mut_ptr().add(first) => _,
+            sums = inout(reg) sums.as_mut_ptr().add(first) => _,
+            sum = inout(reg) u32::from(sum) => _,
+            length = inout(reg) u32::from(length) => _,
+            step = in(reg) u32::from(step.raw()) * 0x1_0001, one = in(reg) 0x1_0001, zero = in(reg) 0,
+            two = out(reg) _, t = out(reg) _, u = out(reg) _,
             options(nostack),
         );
     }

@@ -9,7 +9,7 @@
 use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
 use crate::matching::config::Config;
-use crate::matching::memory::slices::{part, split_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view;
 use crate::matching::memory::workspace::ForAnswers;
 use crate::matching::method::{Frame, Method};
@@ -54,15 +54,19 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
 /// Flags the answers whose partner is the first column of the right image: of the candidates inside that
 /// image theirs is the last. Most of them stand for what the right camera does not see.
 fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
-    let refused = u16::from(config.checks.refuse_ceiling);
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
-    let columns = usize::from(config.disparities);
-    let mut end = Disparity::from_pixels(config.min_disparity).raw();
-    for (answer, flags) in answers.iter_mut().zip(flags).take(columns) {
+    let columns = usize::from(config.disparities).min(answers.len());
+    let mut end = u32::from(Disparity::from_pixels(config.min_disparity).raw());
+    for (x, answer) in part_mut(answers, ..columns).iter_mut().enumerate() {
         keep_scalar_loop();
-        let is_end = answer.raw() == end;
-        *flags = flags.union(PixelFlags::CEILING.when(is_end));
-        *answer = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(is_end) & refused));
-        end = end.wrapping_add(Disparity::ONE);
+        if u32::from(answer.raw()) == end {
+            if let Some(flags) = flags.get_mut(x) {
+                *flags = flags.union(PixelFlags::CEILING);
+            }
+            if config.checks.refuse_ceiling {
+                *answer = Disparity::NONE;
+            }
+        }
+        end += u32::from(Disparity::ONE);
     }
 }

@@ -17,9 +17,6 @@ use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{BESIDE, Select, Winner};
 
-/// The lane numbers.
-const LANES: u32 = 0x0302_0100;
-
 /// The winners of a row. `STRIDE` is the number of candidates where that is known when the crate is compiled,
 /// which lets the compiler unroll the work on them; 0 where it is not.
 #[inline(never)]
@@ -43,100 +40,84 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
     let bias = if S::BITS > 4 { 0 } else { from(first).first().copied().unwrap_or(0) & 0xff };
     let none = (0u32.wrapping_sub(rows::ACROSS as u32 * bias) & 0xff) * ONE;
     let in_assembly = STRIDE > 0 && disparities == row.stride;
-    // As far as here pixels have few candidates, and sums of no others.
-    let fewest = if in_assembly { fewest_of(STRIDE) } else { 4 * words };
-    begin_with::<S>(none, from(first + 1), words, (0, fewest / 4), room);
     let is_checked = unique.is_asked();
     let mut check = unique.checks_from(begin);
-    let Some((winner, winners)) = part_mut(winners.words(), begin..).split_first_mut() else { return };
-    // The first pixel has one candidate.
-    *winner = at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, view::<u32, u8>(room));
-    if is_checked {
-        check(winner.cost(), &mut || second_of(0, 1, room));
-    }
-    if in_assembly && !is_checked {
-        let (next, winners) = split_mut(winners, winners.len().min(fewest - 1));
-        run::<S, STRIDE>(Some((2, true)), room, from(first + 1), next);
-        begin_with::<S>(none, from(first + fewest), words, (fewest / 4, words), room);
-        let (next, winners) = split_mut(winners, winners.len().min(disparities - fewest));
-        run::<S, STRIDE>(Some((fewest + 1, false)), room, from(first + fewest), next);
-        run::<S, STRIDE>(None, room, from(first + disparities), winners);
-        return;
-    }
-    // One by one where they are judged, for their sums are looked at.
-    for (winner, x) in winners.iter_mut().zip(1..) {
-        if x == fewest {
-            begin_with::<S>(none, from(first + x), words, (fewest / 4, words), room);
-        }
+    let mut winners = part_mut(winners.words(), begin..);
+    // Of how many candidates there are sums: while pixels have few, of no more than fifteen others.
+    let (mut x, mut sums) = (0, 0);
+    while !winners.is_empty() {
         let candidates = disparities.min(x + 1);
-        let few = (x < disparities).then_some((candidates, x < fewest));
-        if !in_assembly || !run::<S, STRIDE>(few, room, from(first + x), core::slice::from_mut(winner)) {
-            *winner = next_among::<S>(candidates, from(first + x + rows::ACROSS), from(first + x), room);
+        // Of the window before this one, but for the first.
+        let columns = from(first + x.max(1));
+        let to = if in_assembly { candidates } else { 4 * words };
+        while sums < to {
+            keep_loop();
+            let Some(sixteen) = room.get_mut(1 + sums / 4..).and_then(|sums| sums.first_chunk_mut()) else {
+                return;
+            };
+            let begin = if S::COLUMN_SHIFT == 0 { rows::begin_fast } else { rows::begin_block };
+            begin(none, part(columns, sums / 4..), words, sixteen);
+            sums += 16;
         }
-        if is_checked {
+        // One by one where they are judged, for their sums are looked at.
+        let many = match x {
+            _ if x == 0 || is_checked || !in_assembly => 1,
+            _ if x < disparities => sums - x,
+            _ => winners.len(),
+        };
+        let next;
+        (next, winners) = split_mut(winners, winners.len().min(many));
+        let few = (x < disparities).then_some(candidates);
+        x += next.len();
+        if in_assembly && candidates > 1 {
+            run::<S, STRIDE>(few, room, columns, next);
+        } else if let Some(winner) = next.first_mut() {
+            *winner = match candidates {
+                1 => at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, view::<u32, u8>(room)),
+                _ => next_among::<S>(
+                    candidates,
+                    part(columns, (rows::ACROSS * words).min(columns.len())..),
+                    columns,
+                    room,
+                ),
+            };
+        }
+        if is_checked && let Some(winner) = next.first() {
             check(winner.cost(), &mut || second_of(winner.disparity() as usize, candidates, room));
         }
     }
 }
 
-/// How many candidates the first pixels have sums of, in assembly.
-const fn fewest_of(stride: usize) -> usize {
-    if stride == 64 { 32 } else { 16 }
-}
-
-/// The sums of the window under the first columns, in words from one to another, from what a window of `none`
-/// has.
-#[inline(always)]
-fn begin_with<S: WindowParameters>(
-    none: u32,
-    columns: &[u32],
-    words: usize,
-    (from, to): (usize, usize),
-    room: &mut [u32],
-) {
-    let sums = part_mut(room, 1 + from..1 + to);
-    for (four, sums) in sums.as_chunks_mut().0.iter_mut().enumerate() {
-        let columns = part(columns, from + 4 * four..);
-        if S::COLUMN_SHIFT == 0 {
-            rows::begin_fast(none, columns, words, sums);
-        } else {
-            rows::begin_block(none, columns, words, sums);
-        }
-    }
-}
-
-/// The winners of pixels of which the first has so many candidates, each one more than the one before it, and
-/// whether they have no more than the fewest; or if it is `None`, of pixels for which all are candidates.
-/// Whether there is such a loop.
+/// The winners of pixels of which the first has so many candidates, each one more than the one before it, of
+/// which there are sums; or if it is `None`, of pixels for which all are candidates.
 #[inline(always)]
 fn run<S: WindowParameters, const STRIDE: usize>(
-    few: Option<(usize, bool)>,
+    few: Option<usize>,
     room: &mut [u32],
     columns: &[u32],
     winners: &mut [Winner],
-) -> bool {
+) {
+    if let Some(first) = few {
+        let few = if S::COLUMN_SHIFT == 0 { rows::fast_few } else { rows::block_few };
+        return few(room, columns, STRIDE / 4, winners, first);
+    }
     macro_rules! run {
-        ($all:ident, $fewest:ident, $few:ident) => {{
-            let Some(sums) = room.first_chunk_mut() else { return false };
-            let columns = columns.as_chunks().0;
-            match few {
-                None => rows::$all(sums, columns, winners),
-                Some((first, true)) => rows::$fewest(sums, columns, winners, first),
-                Some((first, false)) => rows::$few(sums, columns, winners, first),
+        ($all:ident) => {
+            if let Some(sums) = room.first_chunk_mut() {
+                rows::$all(sums, columns.as_chunks().0, winners);
             }
-            true
-        }};
+        };
     }
     match (S::COLUMN_SHIFT, STRIDE) {
-        (0, 16) => run!(fast_16, fast_few_of_16, fast_few_of_16),
-        (0, 32) => run!(fast_32, fast_fewest_of_32, fast_few_of_32),
-        (0, 48) => run!(fast_48, fast_fewest_of_48, fast_few_of_48),
-        (0, 64) => run!(fast_64, fast_fewest_of_64, fast_few_of_64),
-        (2, 16) => run!(block_16, block_few_of_16, block_few_of_16),
-        (2, 32) => run!(block_32, block_fewest_of_32, block_few_of_32),
-        (2, 48) => run!(block_48, block_fewest_of_48, block_few_of_48),
-        (2, 64) => run!(block_64, block_fewest_of_64, block_few_of_64),
-        _ => false,
+        (0, 16) => run!(fast_16),
+        (0, 32) => run!(fast_32),
+        (0, 48) => run!(fast_48),
+        (0, 64) => run!(fast_64),
+        (2, 16) => run!(block_16),
+        (2, 32) => run!(block_32),
+        (2, 48) => run!(block_48),
+        (2, 64) => run!(block_64),
+        _ => {}
     }
 }
 
@@ -170,7 +151,7 @@ fn next_among<S: WindowParameters>(
 /// The least of the lanes above 8 bits of its place.
 #[inline(always)]
 fn of_lanes(least: u32, places: u32) -> u32 {
-    let places = places + LANES;
+    let places = places + rows::LANES;
     let even = (least & 0x00ff_00ff) << 8 | places & 0x00ff_00ff;
     let odd = least & 0xff00_ff00 | places >> 8 & 0x00ff_00ff;
     let two = min_halves(even, odd);

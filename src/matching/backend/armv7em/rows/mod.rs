@@ -35,8 +35,6 @@ pub(super) use tables::{
     take_high_48_of, take_high_64, take_high_64_of,
 };
 pub(super) use windows::{
-    ACROSS, block_16, block_32, block_48, block_64, block_few_of_16, block_few_of_32, block_few_of_48,
-    block_few_of_64, block_fewest_of_32, block_fewest_of_48, block_fewest_of_64, fast_16, fast_32, fast_48,
-    fast_64, fast_few_of_16, fast_few_of_32, fast_few_of_48, fast_few_of_64, fast_fewest_of_32,
-    fast_fewest_of_48, fast_fewest_of_64,
+    ACROSS, LANES, block_16, block_32, block_48, block_64, block_few, fast_16, fast_32, fast_48, fast_64,
+    fast_few,
 };

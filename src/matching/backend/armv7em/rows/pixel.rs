@@ -8,7 +8,10 @@
 //! r4-r7   columns, then places              r10, r11   the next column that enters, and that leaves
 //! r12     where sums are                    lr         the next winner; or the mask of a column's digits
 //! sp      eight bytes for every block: the places of its first word and of its second; then what ends the
-//!         loop, the next winner, the disparity before the last candidate, and masks of those that are none
+//!         loop and the next winner
+//!         in the loop for few candidates also the disparity before the last candidate, and masks of those that
+//!         are none; the bytes of a column's others, and where sums begin; which sixteens are left out, and the
+//!         lane numbers
 //! ```
 
 /// Sixteen window sums one column on: 12 instructions, and 8 more where only some digits of the columns
@@ -62,24 +65,13 @@ macro_rules! slide {
 
 /// Sixteen sums of which those that are no candidate's do not win: 9 instructions.
 macro_rules! mask {
-    (all, $d:literal) => {
-        ""
-    };
-    (few, $d:literal) => {
+    () => {
         concat!(
             "ldr r4, [sp, #44]\n",
-            "ldr r5, [r4, #",
-            $d,
-            "]\n",
-            "ldr r6, [r4, #(4 + ",
-            $d,
-            ")]\n",
-            "ldr r7, [r4, #(8 + ",
-            $d,
-            ")]\n",
-            "ldr r4, [r4, #(12 + ",
-            $d,
-            ")]\n",
+            "ldr r5, [r4]\n",
+            "ldr r6, [r4, #4]\n",
+            "ldr r7, [r4, #8]\n",
+            "ldr r4, [r4, #12]\n",
             "orr r0, r0, r5\n",
             "orr r1, r1, r6\n",
             "orr r2, r2, r7\n",
@@ -149,7 +141,7 @@ macro_rules! of_lanes {
 }
 
 /// The sums beside it, and whether it is at an end; what changes from pixel to pixel. 5 instructions, one
-/// more where the candidates are no power of two, and 5 more where they change.
+/// more where the candidates are no power of two.
 macro_rules! beside {
     (power, $back:literal) => {
         concat!(
@@ -165,10 +157,17 @@ macro_rules! beside {
             "uxtb r1, r0\nsub r1, r1, #1\ncmp r1, #{ends}\nbhs "
         )
     };
-    (few, $back:literal) => {
+}
+
+/// [`beside`] where the last candidate changes from pixel to pixel: 13 instructions.
+macro_rules! beside_few {
+    () => {
         concat!(
-            "uxtab r1, r12, r0\nldr r2, [r1, #{beside}]\n",
-            $back,
+            "ldrd r3, r12, [sp, #48]\n",
+            "uxtab r1, r12, r0\n",
+            "ldr r2, [r1, #-1]\n",
+            "add r10, r10, r3\n",
+            "add r11, r11, r3\n",
             "uxtb r1, r0\n",
             "sub r1, r1, #1\n",
             "ldrd r3, r4, [sp, #40]\n",
@@ -176,7 +175,7 @@ macro_rules! beside {
             "add r3, r3, #1\n",
             "sub r4, r4, #1\n",
             "strd r3, r4, [sp, #40]\n",
-            "bhs ",
+            "bhs 4f\n5:\n",
         )
     };
 }
@@ -215,19 +214,16 @@ macro_rules! at_an_end {
     };
 }
 
-/// A pixel; `$rest` puts the pointers back that moved too far, or not far enough.
+/// A pixel with all candidates; `$rest` puts the pointers back that moved too far, or not far enough.
 macro_rules! pixel {
     ($digits:ident, $end:literal, $back:literal, $rest:literal,
-        [$first:ident $first_from:literal $first_to:literal $(,
-        $which:ident $d:literal $from:literal $to:literal)*]
+        [$first_from:literal $first_to:literal $(, $d:literal $from:literal $to:literal)*]
         $ends:ident) => {
         concat!(
             slide!($digits, $first_from, $first_to),
-            mask!($first, "0"),
             take_first!(),
             $(
                 slide!($digits, $from, $to),
-                mask!($which, $d),
                 take_less!($d),
             )*
             of_lanes!(),
@@ -244,18 +240,25 @@ macro_rules! pixel {
 /// What is below the stack's end while a loop runs, but for the places of all blocks.
 macro_rules! enter {
     (all) => {
-        "push {{r6, r7}}\nsub sp, sp, #48\nstr r1, [sp, #32]\n"
+        "push {{r6, r7}}\nsub sp, sp, #64\nstr r1, [sp, #32]\n"
     };
     (quarters) => {
         concat!(enter!(all), "str lr, [sp, #36]\nmovw lr, #0x3f3f\nmovt lr, #0x3f3f\n")
     };
 }
 
-/// The places of a block's first word and its second.
+/// Undoes [`enter`].
+macro_rules! leave {
+    () => {
+        "add sp, sp, #64\npop {{r6, r7}}"
+    };
+}
+
+/// The places of a block's first word and its second: those of the first word of the first block are in `r4`.
 macro_rules! places {
     ($($at:literal),*) => {
         concat!(
-            "movw r4, #0x0100\nmovt r4, #0x0302\nadd r5, r4, #0x04040404\nstrd r4, r5, [sp, #0]\n",
+            "add r5, r4, #0x04040404\nstrd r4, r5, [sp, #0]\n",
             $("add r4, r4, #0x10101010\nadd r5, r5, #0x10101010\nstrd r4, r5, [sp, #", $at, "]\n",)*
         )
     };

@@ -6,18 +6,26 @@ use core::arch::asm;
 /// How many columns after the one that leaves a window the one is that enters it.
 pub(in super::super) const ACROSS: usize = 9;
 
-/// No candidate, for the most candidates, then one for each of them.
-static MASKS: [u8; 128] = {
-    let mut masks = [0; 128];
-    let mut i = 64;
-    while i < 128 {
+/// The lane numbers.
+pub(in super::super) const LANES: u32 = 0x0302_0100;
+
+/// Sixteens of candidates, at most.
+const BLOCKS: usize = 4;
+
+/// Sixteen candidates, and sixteen that are none.
+static MASKS: [u8; 32] = {
+    let mut masks = [0; 32];
+    let mut i = 16;
+    while i < 32 {
         masks[i] = u8::MAX;
         i += 1;
     }
     masks
 };
 
-/// [`winners_of`] for all candidates.
+/// The loop for all candidates: how many bytes after the first sum `r12` stands before a pixel, and how many once
+/// its sums are read; what makes up for what the pointers moved otherwise than they should; where the places of
+/// later blocks stand; and the blocks.
 macro_rules! winners {
     ($name:ident, $rounds:tt, $digits:ident, $stride:literal $ends:ident,
         ($before:literal, $after:literal, $back:literal), [$($at:literal),*],
@@ -59,11 +67,10 @@ macro_rules! winners {
                     at_an_end!(),
                     "b 7b",
                     "8:",
-                    "add sp, sp, #48",
-                    "pop {{r6, r7}}",
+                    leave!(),
                     ends = const $stride - 2, beside = const -1 - $after,
                     inout("r0") count => _, inout("r1") winners.end => _,
-                    out("r2") _, out("r3") _, out("r4") _, out("r5") _, out("r8") _, out("r9") _,
+                    out("r2") _, out("r3") _, inout("r4") LANES => _, out("r5") _, out("r8") _, out("r9") _,
                     inout("r10") columns.as_ptr().add(ACROSS) => _,
                     inout("r11") columns.as_ptr() => _,
                     inout("r12") sums.as_mut_ptr().cast::<u8>().add(4 + $before) => _,
@@ -74,40 +81,73 @@ macro_rules! winners {
     };
 }
 
-/// [`winners_of`] for the first pixels, which have fewer candidates.
+/// The loop for the first pixels, which have fewer candidates, whatever the number of all of them is.
 macro_rules! few_winners {
-    ($name:ident, $digits:ident, $stride:literal, $most:literal, ($before:literal, $after:literal,
-    $back:literal),
-        [$($at:literal),*], $blocks:tt) => {
+    ($name:ident, $digits:ident) => {
         /// Moves the window on where the first winner has `first` candidates and each one more than the one
-        /// before it.
-        #[doc = concat!("There are at most `", stringify!($most), "`.")]
-        /// Only these have sums. It takes 14 instructions a pixel more, and 9 for every sixteen that may be
-        /// none.
+        /// before it, in columns of so many words. There are sums of all sixteens of candidates of which the
+        /// first winner has one, and the last winner has no more. 41 instructions a pixel, 26 for every
+        /// sixteen of its candidates, and what `slide` says more.
         #[inline(never)]
         pub(in super::super) fn $name(
-            sums: &mut [u32; $stride / 4 + 2],
-            columns: &[[u32; $stride / 4]],
+            sums: &mut [u32],
+            columns: &[u32],
+            words: usize,
             winners: &mut [Winner],
             first: usize,
         ) {
-            if winners.is_empty() || columns.len() < winners.len() + ACROSS {
+            if first < 2 || winners.is_empty() {
                 return;
             }
-            if first < 2 || first + winners.len() > $most + 1 {
+            // Sixteens before the last one.
+            let before = (first - 1) / 16;
+            let most = 16 * (before + 1);
+            if before >= BLOCKS || first + winners.len() > most + 1 || sums.len() < most / 4 + 2 {
                 return;
             }
+            if 4 * words < most || columns.len() < (winners.len() + ACROSS) * words {
+                return;
+            }
+            let skipped = BLOCKS - 1 - before;
             let winners = winners.as_mut_ptr_range();
-            // SAFETY: as above, but for a winner in every round. Masks begin as many bytes before their
-            // middle as there are candidates: fewer than half of all masks, which are more than sums that are
-            // read.
+            let sums = sums.as_mut_ptr().wrapping_add(1);
+            let more = [4 * words - most, sums as usize, skipped, LANES as usize];
+            // SAFETY: the loop writes as many winners as there are, one in a round. For each it reads two
+            // columns, of which there are enough, as far as there are sums, and reads and writes the sums, of
+            // which the word before the first and the one after the last are read as neighbours of a winner.
+            // Masks begin as many bytes before their middle as the last sixteen has candidates. `more` lives
+            // until it is done. The stack and the two registers that no operand may be are left as they were.
             unsafe {
                 asm!(
                     enter!($digits),
                     "strd r2, r3, [sp, #40]",
-                    places!($($at),*),
+                    "ldmia r5, {{r2, r3, r5, r6}}",
+                    "strd r2, r3, [sp, #48]",
+                    "strd r5, r6, [sp, #56]",
+                    places!("8", "16", "24"),
                     "2:",
-                    pixel!($digits, "4", "5", $back, $blocks few),
+                    "mvn r8, #0",
+                    "ldrd r4, r9, [sp, #56]",
+                    // The last sixteens of four.
+                    "tbb [pc, r4]",
+                    "10:",
+                    ".byte (11f - 10b) / 2, (12f - 10b) / 2, (13f - 10b) / 2, (14f - 10b) / 2",
+                    "11:",
+                    slide!($digits, "ldmia r12", "stmia r12!"),
+                    take_less!("0"),
+                    "12:",
+                    slide!($digits, "ldmia r12", "stmia r12!"),
+                    take_less!("16"),
+                    "13:",
+                    slide!($digits, "ldmia r12", "stmia r12!"),
+                    take_less!("32"),
+                    "14:",
+                    slide!($digits, "ldmia r12", "stmia r12"),
+                    mask!(),
+                    take_less!("48"),
+                    of_lanes!(),
+                    beside_few!(),
+                    store!($digits),
                     compare_with_last!($digits),
                     "bne 2b",
                     "b 8f",
@@ -115,15 +155,17 @@ macro_rules! few_winners {
                     at_an_end!(),
                     "b 5b",
                     "8:",
-                    "add sp, sp, #48",
-                    "pop {{r6, r7}}",
-                    beside = const -1 - $after,
+                    leave!(),
                     out("r0") _, inout("r1") winners.end => _,
-                    inout("r2") first - 2 => _, inout("r3") MASKS.as_ptr().wrapping_add(64 - first) => _,
-                    out("r4") _, out("r5") _, out("r8") _, out("r9") _,
-                    inout("r10") columns.as_ptr().add(ACROSS) => _,
+                    inout("r2") first - 2 => _,
+                    inout("r3") MASKS.as_ptr().wrapping_add(most - first) => _,
+                    // The places of sixteens that are left out are no places.
+                    inout("r4") LANES.wrapping_sub(skipped as u32 * 0x1010_1010) => _,
+                    inout("r5") more.as_ptr() => _,
+                    out("r8") _, out("r9") _,
+                    inout("r10") columns.as_ptr().add(ACROSS * words) => _,
                     inout("r11") columns.as_ptr() => _,
-                    inout("r12") sums.as_mut_ptr().cast::<u8>().add(4 + $before) => _,
+                    inout("r12") sums => _,
                     inout("lr") winners.start => _,
                 );
             }
@@ -131,52 +173,33 @@ macro_rules! few_winners {
     };
 }
 
-/// The loops for so many candidates: for all of them, and for the first pixels. For each of them: how many
-/// bytes after the first sum `r12` stands before a pixel, and how many once its sums are read; what makes up
-/// for what the pointers moved otherwise than they should; where the places of later blocks stand; and the
-/// blocks.
-macro_rules! winners_of {
-    (16, $digits:ident: $all:ident, $few:ident) => {
-        winners!($all, 2, $digits, 16 power, (0, 0, ""), [], [all "ldmia r12" "stmia r12"]);
-        few_winners!($few, $digits, 16, 16, (0, 0, ""), [], [few "ldmia r12" "stmia r12"]);
+/// [`winners`] for so many candidates.
+macro_rules! all_of {
+    (16, $digits:ident: $name:ident) => {
+        winners!($name, 2, $digits, 16 power, (0, 0, ""), [], ["ldmia r12" "stmia r12"]);
     };
-    (32, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
-        winners!($all, 2, $digits, 32 power, (16, 16, ""), ["8"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12"]);
-        few_winners!($fewest, $digits, 32, 16, (0, 0, "add r10, r10, #16\nadd r11, r11, #16\n"), [],
-            [few "ldmia r12" "stmia r12"]);
-        few_winners!($few, $digits, 32, 32, (16, 16, ""), ["8"],
-            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12"]);
+    (32, $digits:ident: $name:ident) => {
+        winners!($name, 2, $digits, 32 power, (16, 16, ""), ["8"],
+            ["ldmdb r12" "stmdb r12", "16" "ldmia r12" "stmia r12"]);
     };
-    (48, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
-        winners!($all, 1, $digits, 48 other, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
-            all "32" "ldmia r12" "stmia r12"]);
-        few_winners!($fewest, $digits, 48, 16, (0, 0, "add r10, r10, #32\nadd r11, r11, #32\n"), [],
-            [few "ldmia r12" "stmia r12"]);
-        few_winners!($few, $digits, 48, 48, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
-            [all "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12!",
-            few "32" "ldmia r12" "stmia r12"]);
+    (48, $digits:ident: $name:ident) => {
+        winners!($name, 1, $digits, 48 other, (16, 32, "sub r12, r12, #16\n"), ["8", "16"],
+            ["ldmdb r12" "stmdb r12", "16" "ldmia r12" "stmia r12!", "32" "ldmia r12" "stmia r12"]);
     };
-    (64, $digits:ident: $all:ident, $fewest:ident, $few:ident) => {
-        winners!($all, 1, $digits, 64 power, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
-            all "32" "ldmia r12" "stmia r12!",
-            all "48" "ldmia r12" "stmia r12"]);
-        few_winners!($fewest, $digits, 64, 32, (16, 16, "add r10, r10, #32\nadd r11, r11, #32\n"), ["8"],
-            [few "ldmdb r12" "stmdb r12", few "16" "ldmia r12" "stmia r12"]);
-        few_winners!($few, $digits, 64, 64, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
-            [all "ldmdb r12" "stmdb r12", all "16" "ldmia r12" "stmia r12!",
-            few "32" "ldmia r12" "stmia r12!",
-            few "48" "ldmia r12" "stmia r12"]);
+    (64, $rounds:tt, $digits:ident: $name:ident) => {
+        winners!($name, $rounds, $digits, 64 power, (16, 48, "sub r12, r12, #32\n"), ["8", "16", "24"],
+            ["ldmdb r12" "stmdb r12", "16" "ldmia r12" "stmia r12!", "32" "ldmia r12" "stmia r12!",
+            "48" "ldmia r12" "stmia r12"]);
     };
 }
 
-winners_of!(16, all: fast_16, fast_few_of_16);
-winners_of!(32, all: fast_32, fast_fewest_of_32, fast_few_of_32);
-winners_of!(48, all: fast_48, fast_fewest_of_48, fast_few_of_48);
-winners_of!(64, all: fast_64, fast_fewest_of_64, fast_few_of_64);
-winners_of!(16, quarters: block_16, block_few_of_16);
-winners_of!(32, quarters: block_32, block_fewest_of_32, block_few_of_32);
-winners_of!(48, quarters: block_48, block_fewest_of_48, block_few_of_48);
-winners_of!(64, quarters: block_64, block_fewest_of_64, block_few_of_64);
+all_of!(16, all: fast_16);
+all_of!(32, all: fast_32);
+all_of!(48, all: fast_48);
+all_of!(64, 2, all: fast_64);
+few_winners!(fast_few, all);
+all_of!(16, quarters: block_16);
+all_of!(32, quarters: block_32);
+all_of!(48, quarters: block_48);
+all_of!(64, 1, quarters: block_64);
+few_winners!(block_few, quarters);

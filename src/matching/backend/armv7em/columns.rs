@@ -16,11 +16,14 @@ use crate::dsp::{ONE, add};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::STEP;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
 const MOST: usize = 64;
+/// So many columns less than half of the candidates are in no window of a pixel that has the other half: the first
+/// pixel that has it is one window on.
+const FEW_LESS: usize = rows::ACROSS / 2 + 1;
 /// The high four bits of each byte.
 const HIGH: u32 = 0xf0f0_f0f0;
 
@@ -44,18 +47,24 @@ pub(super) fn update_fours<const STRIDE: usize, const LINE: usize>(
     let codes = [row.enter, row.leave];
     let rights = reversed(row, codes.map(|codes| codes.unwrap_or(&[])), (HIGH, false), workspace);
     let rights = rights.map(|rights| view(rights));
-    // Beside the columns that windows have is what windows beyond the ends have: of them nothing differs.
+    // Beside the columns that windows have is what windows beyond the ends have.
     let words = row.stride / 4;
     for outside in [begin, OUTSIDE + row.width] {
-        let sums = part_mut(columns, outside * words..(outside + OUTSIDE) * words);
-        // They are all the same, and whole steps of them.
-        let sum = add(sums.first().copied().unwrap_or(0), 4 * ONE);
-        for sums in sums.as_chunks_mut().0 {
-            keep_loop();
-            *sums = [sum; STEP / 4];
-        }
+        add_nothing(part_mut(columns, outside * words..(outside + OUTSIDE) * words));
     }
-    Plane { row, begin, lefts: codes, rights }.sum::<STRIDE, LINE>(false, tables, columns);
+    let few = (row.stride / 2).saturating_sub(FEW_LESS);
+    Plane { row, begin, few, lefts: codes, rights }.sum::<STRIDE, LINE>(false, tables, columns);
+}
+
+/// Moves columns beyond an end one row down: of them nothing differs.
+#[inline(never)]
+fn add_nothing(columns: &mut [u32]) {
+    // They are all the same, and whole steps of them: a step of each column at a time.
+    let sum = add(columns.first().copied().unwrap_or(0), 4 * ONE);
+    for steps in columns.as_chunks_mut().0 {
+        keep_loop();
+        *steps = [sum; OUTSIDE * STEP / 4];
+    }
 }
 
 /// [`update_fours`] where codes have eight bits, the left ones before the right ones.
@@ -81,7 +90,8 @@ pub(super) fn update_eights<const STRIDE: usize, const LINE: usize>(
             rights.iter_mut().for_each(|rights| rights.iter_mut().for_each(|codes| *codes <<= 4));
         }
         let rights = rights.map(|rights| view(rights));
-        Plane { row, begin, lefts, rights }.sum::<STRIDE, LINE>(is_high, tables, columns);
+        // Their windows add and take off what does not fit into a byte.
+        Plane { row, begin, few: 0, lefts, rights }.sum::<STRIDE, LINE>(is_high, tables, columns);
     }
 }
 
@@ -90,6 +100,8 @@ struct Plane<'a> {
     row: &'a Rows<'a>,
     /// The first column.
     begin: usize,
+    /// How many of the first columns may be left without the second half of their candidates.
+    few: usize,
     /// The left codes, where there is a row: the four bits are the low ones, or the high ones.
     lefts: [Option<&'a [u8]>; 2],
     /// The right codes, reversed and one row's inverted: the high four bits of each byte, and nothing else
@@ -108,6 +120,7 @@ impl Plane<'_> {
     ) {
         let [enters, leaves] = self.lefts;
         let Some(any) = enters.or(leaves) else { return };
+        let lefts = self.lefts.map(|codes| codes.unwrap_or(any));
         let words = tables::words::<LINE>();
         let table_of = |row: usize| row * words..(row + 1) * words;
         // Nothing differs in a row that is not there.
@@ -123,8 +136,10 @@ impl Plane<'_> {
         let mut chunk = 0;
         while chunk < stride {
             let half = MOST.min(stride - chunk) / 2;
-            let mut from = self.begin;
+            let (mut from, mut few) = (self.begin, self.few);
+            let mut next = part_mut(columns, (OUTSIDE + from) * words..);
             while from < width {
+                keep_loop();
                 let piece = from..width.min(from + LINE - half);
                 let first = width - piece.end + chunk;
                 let (places, was_beside) = ((half, piece.len()), from > self.begin);
@@ -134,17 +149,18 @@ impl Plane<'_> {
                         make_beside::<LINE>(table, part(right, first..), places, was_beside);
                     }
                 }
-                let codes = self.lefts.map(|codes| part(codes.unwrap_or(any), piece.clone()));
-                let columns = part_mut(columns, (OUTSIDE + from) * words..(OUTSIDE + piece.end) * words);
+                let codes = lefts.map(|codes| part(codes, from..));
+                let columns;
+                (columns, next) = split_mut(next, piece.len() * words);
                 match (STRIDE, is_high) {
-                    (16, false) => rows::add_low_16::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (32, false) => rows::add_low_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (48, false) => rows::add_low_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (64, false) => rows::add_low_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (16, true) => rows::take_high_16::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (32, true) => rows::take_high_32::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (48, true) => rows::take_high_48::<LINE>(tables, codes, columns.as_chunks_mut().0),
-                    (64, true) => rows::take_high_64::<LINE>(tables, codes, columns.as_chunks_mut().0),
+                    (16, false) => rows::add_low_16::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (32, false) => rows::add_low_32::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (48, false) => rows::add_low_48::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (64, false) => rows::add_low_64::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (16, true) => rows::take_high_16::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (32, true) => rows::take_high_32::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (48, true) => rows::take_high_48::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
+                    (64, true) => rows::take_high_64::<LINE>(tables, codes, few, columns.as_chunks_mut().0),
                     _ => {
                         let sum = match (half, is_high) {
                             (8, false) => rows::add_low_16_of::<LINE>,
@@ -159,7 +175,7 @@ impl Plane<'_> {
                         sum(tables, codes, (words, chunk / 4), columns);
                     }
                 }
-                from = piece.end;
+                (from, few) = (piece.end, 0);
             }
             chunk += MOST;
         }

@@ -160,6 +160,42 @@ macro_rules! column {
     };
 }
 
+/// The first pixels of whose columns only the first half of the candidates matters, as far as `r10` says: 33
+/// instructions a pixel at 32 candidates, 56 at 64. Elsewhere there are none.
+macro_rules! first_halves {
+    (32, $bits:ident) => {
+        first_halves!(
+            lines_of_codes!($bits),
+            costs!(4, "-1"),
+            add_four!($bits, near, "ldmia r9", "stmia r9"),
+            "add r9, r9, #32\n",
+        )
+    };
+    (64, $bits:ident) => {
+        first_halves!(
+            lines_of_codes!($bits),
+            "strd r4, r8, [sp, #8]\n",
+            costs!(4, "-1"),
+            add_four!($bits, near, "ldmia r9", "stmia r9!"),
+            "ldrd r4, r8, [sp, #8]\n",
+            costs!(4, "15"),
+            add_four!($bits, near, "ldmia r9", "stmia r9"),
+            "add r9, r9, #48\n",
+        )
+    };
+    ($stride:tt, $bits:ident) => {
+        ""
+    };
+    ($($pixel:expr,)*) => {
+        concat!(
+            "cmp r9, r10\nbeq 6f\n5:\n",
+            $($pixel,)*
+            "sub r11, r11, #1\ncmp r9, r10\nbne 5b\n",
+            "6:\nldr r0, [sp, #4]\ncmp r0, #0\nbeq 8f\n",
+        )
+    };
+}
+
 /// Goes on to the next pixel's column, if its candidates are not all that the columns have: 2 instructions.
 macro_rules! next {
     (all) => {
@@ -171,25 +207,27 @@ macro_rules! next {
 }
 
 /// Where a loop puts the end of the columns, which `r1` is; or that and the bytes from a column's end to the
-/// next one's beginning, both of which `r1` points to.
-macro_rules! end {
-    (all) => {
-        "str r1, [sp]\n"
+/// next one's beginning, both of which `r1` points to. Then what comes before the loop.
+macro_rules! begin {
+    (all, $stride:tt, $bits:ident) => {
+        concat!("strd r1, r0, [sp]\n", first_halves!($stride, $bits))
     };
-    (part) => {
+    (part, $stride:tt, $bits:ident) => {
         "ldrd r2, r3, [r1]\nstrd r2, r3, [sp]\n"
     };
 }
 
-/// The loop over `count` pixels.
+/// The loop over `count` pixels, after those whose columns end where `few` does. The first of all has the place
+/// before `place`.
 macro_rules! add_all {
     ($bits:ident, $stride:tt, $rounds:tt, $which:ident,
-     $count:ident, $sums:ident, $end:expr, $place:ident, $enters:ident, $leaves:ident) => {
+     $count:ident, $sums:ident, $few:expr, $end:expr, $place:ident, $enters:ident, $leaves:ident) => {
         asm!(
             "push {{r6, r7}}",
             "sub sp, sp, #16",
-            end!($which),
-            if_twice!($rounds, "tst r0, #1\nbne 3f\n"),
+            begin!($which, $stride, $bits),
+            "movw r10, #0x0f0f\nmovt r10, #0x0f0f",
+            if_twice!($rounds, "tst r0, #1\nbne 3f\nsub r11, r11, #1\n"),
             "2:",
             if_twice!($rounds, concat!(column!($stride, $bits, "0"), next!($which))),
             "3:",
@@ -199,13 +237,14 @@ macro_rules! add_all {
             "sub r11, r11, #{rounds}",
             "cmp r9, r0",
             "bne 2b",
+            "8:",
             "add sp, sp, #16",
             "pop {{r6, r7}}",
             table = const CODES * LINE, line = const LINE, rounds = const $rounds,
             inout("r0") $count => _, inout("r1") $end => _,
             out("r2") _, out("r3") _, out("r4") _, out("r5") _, out("r8") _,
             inout("r9") $sums => _,
-            in("r10") 0x0f0f_0f0fu32,
+            inout("r10") $few => _,
             inout("r11") $place => _,
             inout("r12") $enters.as_ptr() => _,
             inout("lr") $leaves.as_ptr() => _,
@@ -216,31 +255,35 @@ macro_rules! add_all {
 macro_rules! by_tables {
     ($name:ident, $of_part:ident, $bits:ident, $stride:tt, $rounds:tt) => {
         /// Adds the costs of a piece of a row to its columns, or takes them off, by the tables of the row
-        /// that enters and of the one that leaves. 9 instructions a pixel, two more where a round has one,
-        /// and 32 for each 32 of its candidates.
+        /// that enters and of the one that leaves; in the first `few` columns perhaps of the first half of
+        /// the candidates alone. 9 instructions a pixel, two more where a round has one, and 32 for each 32
+        /// of its candidates.
         #[inline(never)]
         pub(in super::super) fn $name<const LINE: usize>(
             tables: &[u32],
             [enters, leaves]: [&[u8]; 2],
+            few: usize,
             columns: &mut [[u32; $stride / 4]],
         ) {
             let count = columns.len().min(enters.len()).min(leaves.len());
             if count == 0 || count + $stride / 2 > LINE || tables.len() < 2 * words::<LINE>() {
                 return;
             }
-            // The first pixel has the last place. The last one of a round reads one byte before that.
-            let last = count - 1 + if $rounds == 2 { count % 2 } else { 1 };
-            let place = tables.as_ptr().cast::<u8>().wrapping_add(last);
+            // The first pixel has the last place.
+            let place = tables.as_ptr().cast::<u8>().wrapping_add(count);
             let sums = columns.as_mut_ptr();
-            // SAFETY: the loop reads a code of each of `count` pixels from either row and changes as many
-            // columns, which there are: one in a round; or two, but for one in the first if `count` is odd.
+            let few = if $stride == 32 || $stride == 64 { few.min(count) } else { 0 };
+            let rest = count - few;
+            // SAFETY: the loops read a code of each of `count` pixels from either row and change as many
+            // columns, which there are: one in a round; or two, but for one in the first if what is left of
+            // `count` is odd.
             // From the tables it reads, for four bits, half as many bytes as there are candidates of the
             // code's line from the pixel's place on, the last of which is
             // `count - 1`: inside of the line. The stack and the two registers that no operand may be are
             // left as they were.
             unsafe {
-                let end = sums.add(count);
-                add_all!($bits, $stride, $rounds, all, count, sums, end, place, enters, leaves);
+                let (few, end) = (sums.add(few), sums.add(count));
+                add_all!($bits, $stride, $rounds, all, rest, sums, few, end, place, enters, leaves);
             }
         }
 
@@ -259,8 +302,7 @@ macro_rules! by_tables {
             if count == 0 || !is_inside || count + $stride / 2 > LINE || tables.len() < 2 * words::<LINE>() {
                 return;
             }
-            let last = count - 1 + if $rounds == 2 { count % 2 } else { 1 };
-            let place = tables.as_ptr().cast::<u8>().wrapping_add(last);
+            let place = tables.as_ptr().cast::<u8>().wrapping_add(count);
             let sums = columns.as_mut_ptr().wrapping_add(from);
             let ends = [sums.wrapping_add(count * stride) as usize, 4 * stride - $stride];
             // SAFETY: of each of `count` pixels the loop reads a code from either row, which has them, and
@@ -269,7 +311,7 @@ macro_rules! by_tables {
             // is done. The stack and the two registers that no operand may be are left as they were.
             unsafe {
                 let end = ends.as_ptr();
-                add_all!($bits, $stride, $rounds, part, count, sums, end, place, enters, leaves);
+                add_all!($bits, $stride, $rounds, part, count, sums, sums, end, place, enters, leaves);
             }
         }
     };
@@ -278,7 +320,7 @@ macro_rules! by_tables {
 by_tables!(add_low_16, add_low_16_of, low, 16, 2);
 by_tables!(add_low_32, add_low_32_of, low, 32, 2);
 by_tables!(add_low_48, add_low_48_of, low, 48, 1);
-by_tables!(add_low_64, add_low_64_of, low, 64, 1);
+by_tables!(add_low_64, add_low_64_of, low, 64, 2);
 by_tables!(take_high_16, take_high_16_of, high, 16, 2);
 by_tables!(take_high_32, take_high_32_of, high, 32, 2);
 by_tables!(take_high_48, take_high_48_of, high, 48, 1);

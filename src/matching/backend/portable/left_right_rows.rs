@@ -7,7 +7,14 @@ use crate::matching::backend::work::Rules;
 use crate::matching::memory::winners::WinnerRows;
 use crate::units::{Disparity, PixelFlags};
 
-/// [`consistency::offer`] of all winners, then the disparity that each one's partner keeps.
+/// [`consistency::offer`] of all winners.
+#[inline(never)]
+pub(in crate::matching::backend) fn offer(costs: &[u8], disparities: &[u8], right: &mut [u16]) {
+    let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u32::from(cost) << 8 | u32::from(d), d));
+    consistency::offer(keys, right);
+}
+
+/// [`offer`], then the disparity that each one's partner keeps.
 #[inline(never)]
 pub(in crate::matching::backend) fn keep(
     costs: &[u8],
@@ -15,8 +22,7 @@ pub(in crate::matching::backend) fn keep(
     right: &mut [u16],
     kept: &mut [u8],
 ) {
-    let keys = costs.iter().zip(disparities).map(|(&cost, &d)| (u32::from(cost) << 8 | u32::from(d), d));
-    consistency::offer(keys, right);
+    offer(costs, disparities, right);
     for (x, (kept, &disparity)) in kept.iter_mut().zip(disparities).enumerate() {
         *kept = consistency::kept(x, disparity, right);
     }

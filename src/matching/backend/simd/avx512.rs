@@ -5,7 +5,11 @@ use super::avx2::{lanes_after, lanes_before};
 use super::half_words::HalfWords;
 use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
+use crate::matching::memory::slices::part;
 use core::arch::x86_64::*;
+
+/// Bytes in a register.
+const BYTES: usize = 64;
 
 /// 64 bytes in a register.
 #[derive(Clone, Copy)]
@@ -132,6 +136,35 @@ impl HalfWords for Widest {
 }
 
 impl Widest {
+    /// The first bytes of a row, and zeros where it has less.
+    #[inline(always)]
+    fn of_first(row: &[u8]) -> Self {
+        let Some(cell) = row.first_chunk() else {
+            let lanes = (1 << row.len()) - 1;
+            // SAFETY: as above. Of what is in memory only the bytes of the row are read, fewer than lanes.
+            return unsafe { Self(_mm512_maskz_loadu_epi8(lanes, row.as_ptr().cast())) };
+        };
+        Self::of(*cell)
+    }
+
+    /// Writes the first bytes of a row, as many as it has.
+    #[inline(always)]
+    fn put_first(self, row: &mut [u8]) {
+        match row.first_chunk_mut() {
+            Some(cell) => *cell = self.cell(),
+            None => row.iter_mut().zip(self.cell()).for_each(|(to, from)| *to = from),
+        }
+    }
+
+    /// The numbers of the lanes that `places` are, and zero where there is no such lane.
+    #[inline(always)]
+    fn at(self, places: Self) -> Self {
+        safely!({
+            let is_inside = _mm512_cmplt_epu8_mask(places.0, Self::splat(BYTES as u8).0);
+            Self(_mm512_maskz_permutexvar_epi8(is_inside, places.0, self.0))
+        })
+    }
+
     /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
     fn last_lane_of(cells: &[Self], number: Self) -> usize {
@@ -143,5 +176,95 @@ impl Widest {
             place = if equal != 0 || cells.len() == 1 { last } else { place };
         }
         place
+    }
+}
+
+/// The numbers of all lanes.
+const LANES: &[u8; BYTES] = &{
+    let mut lanes = [0; BYTES];
+    let mut lane = 0;
+    while lane < BYTES {
+        lanes[lane] = lane as u8;
+        lane += 1;
+    }
+    lanes
+};
+
+/// Of how many candidates [`offer`] takes less than one winner after the other.
+pub(super) const FEW: usize = 32;
+/// Of how many candidates lanes modulo 256 are told apart by [`kept`].
+pub(super) const MOST: usize = 192;
+
+/// [`offer`](crate::matching::backend::portable::left_right_rows::offer) of winners among few candidates, to 64
+/// right columns at a time, of which the disparities alone are kept: four instructions for 64 evaluations,
+/// whatever the picture.
+#[inline(always)]
+pub(super) fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: &mut [u8]) {
+    for (first, right) in (0..).step_by(BYTES).zip(right.chunks_mut(BYTES)) {
+        let mut kept = Kept::of_nobody(candidates);
+        let [costs, disparities] = [part(costs, first..), part(disparities, first..)];
+        let whole = candidates.min((costs.len() + 1).saturating_sub(BYTES));
+        for at in (whole..candidates).rev() {
+            let offered = [costs, disparities].map(
+                #[inline(always)]
+                |row| Widest::of_first(row.get(at..).unwrap_or_default()),
+            );
+            kept.offer(offered);
+        }
+        let [costs, disparities] = [costs, disparities].map(
+            #[inline(always)]
+            |row| row.get(..whole + BYTES - 1).unwrap_or_default().windows(BYTES).rev(),
+        );
+        for (costs, disparities) in costs.zip(disparities) {
+            kept.offer([Widest::of_first(costs), Widest::of_first(disparities)]);
+        }
+        kept.disparities.put_first(right);
+    }
+}
+
+/// [`kept`](crate::matching::backend::portable::left_right_rows::kept) of 64 winners at a time, by the
+/// disparities that right columns keep.
+#[inline(always)]
+pub(super) fn kept(disparities: &[u8], candidates: usize, right: &[u8], kept: &mut [u8]) {
+    for (x, (kept, disparities)) in kept.chunks_mut(BYTES).zip(disparities.chunks(BYTES)).enumerate() {
+        // Lanes after the first of these that a pixel's partner is, modulo 256.
+        let partners = Widest::of(*LANES).minus(Widest::of_first(disparities));
+        let mut found = Widest::splat(0);
+        for behind in 0..=candidates.div_ceil(BYTES).min(x) {
+            let right = Widest::of_first(part(right, (x - behind) * BYTES..));
+            found = found.or(right.at(partners.plus(Widest::splat((BYTES * behind) as u8))));
+        }
+        found.put_first(kept);
+    }
+}
+
+/// What 64 right columns keep: the least cost, and the disparity of the left pixel that offered it.
+struct Kept {
+    costs: Widest,
+    disparities: Widest,
+    /// The disparity of those who offered last.
+    last: Widest,
+}
+
+impl Kept {
+    /// Before the last of the candidates offers.
+    #[inline(always)]
+    fn of_nobody(candidates: usize) -> Self {
+        let none = Widest::splat(u8::MAX);
+        Self { costs: none, disparities: none, last: Widest::splat(candidates as u8) }
+    }
+
+    /// Offers the winners that are the next nearer candidate, among the left pixels that it would be of: their
+    /// costs and disparities. Of equal costs the nearest stays.
+    #[inline(always)]
+    fn offer(&mut self, [costs, disparities]: [Widest; 2]) {
+        self.last = self.last.minus(Widest::splat(1));
+        let (last, kept) = (self.last.0, self.costs.0);
+        safely!({
+            let offered = _mm512_cmpeq_epi8_mask(disparities.0, last);
+            let is_less = _mm512_mask_cmple_epu8_mask(offered, costs.0, kept);
+            self.costs.0 = _mm512_mask_min_epu8(kept, offered, costs.0, kept);
+            self.disparities.0 = _mm512_mask_mov_epi8(self.disparities.0, is_less, last);
+        });
     }
 }

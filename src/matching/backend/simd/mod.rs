@@ -54,7 +54,7 @@ use super::work::{
 };
 use crate::imaging::{census_plus4, census_ring8};
 use crate::matching::kernel::Kernel;
-use crate::matching::memory::slices::split_mut;
+use crate::matching::memory::slices::{part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use crate::units::Disparity;
@@ -176,7 +176,11 @@ impl Isa for Backend {
         let width = winners.width();
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
-        left_right_rows::keep(winners.costs, winners.disparities, right, kept);
+        let room = [&mut *kept, &mut *fractions].map(|row| part_mut(row, ..winners.costs.len()));
+        match self {
+            Self::Avx512(avx512) => avx512.keep(&winners, usize::from(rules.ceiling) + 1, right, room),
+            _ => left_right_rows::keep(winners.costs, winners.disparities, right, kept),
+        }
         self.in_vectors(
             #[inline(always)]
             || left_right_rows::answer::<P>(&winners, kept, rules, fractions, answers, flags),

@@ -3,7 +3,7 @@
 pub(super) use super::{Vector as Wide, Vector as WideByAvx512, Vector as Widest};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::WindowWork;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Select, WinnerRows};
 
 /// No proof that the processor has AVX2 can be made.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -18,6 +18,10 @@ impl Avx2 {
     }
 
     pub(super) fn run(self, _: impl FnOnce()) {
+        match self {}
+    }
+
+    pub(super) fn keep(self, _: &WinnerRows<'_>, _: usize, _: &mut [u16], _: [&mut [u8]; 2]) {
         match self {}
     }
 

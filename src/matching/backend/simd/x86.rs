@@ -3,11 +3,12 @@
 
 pub(super) use super::avx2::{Wide, WideByAvx512};
 pub(super) use super::avx512::Widest;
-use super::windows;
+use super::{avx512 as widest, windows};
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::portable::group::Group;
+use crate::matching::backend::portable::left_right_rows;
 use crate::matching::backend::work::WindowWork;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Select, WinnerRows};
 use core::arch::x86_64::__cpuid;
 
 cpufeatures::new!(avx2, "avx2");
@@ -102,6 +103,35 @@ impl Avx512 {
     pub(super) fn run(self, work: impl FnOnce()) {
         // SAFETY: `self` is the proof that the processor has the features that the function is compiled for.
         unsafe { run_512(work) }
+    }
+
+    /// [`left_right_rows::keep`]. `of_right` is room for a byte a winner.
+    #[inline]
+    pub(super) fn keep(
+        self,
+        winners: &WinnerRows<'_>,
+        candidates: usize,
+        right: &mut [u16],
+        [kept, of_right]: [&mut [u8]; 2],
+    ) {
+        let (costs, disparities) = (&*winners.costs, &*winners.disparities);
+        if candidates > widest::MOST {
+            return left_right_rows::keep(costs, disparities, right, kept);
+        }
+        self.run(
+            #[inline(always)]
+            || {
+                if candidates <= widest::FEW {
+                    widest::offer(costs, disparities, candidates, of_right);
+                } else {
+                    left_right_rows::offer(costs, disparities, right);
+                    for (to, from) in of_right.iter_mut().zip(right) {
+                        *to = *from as u8;
+                    }
+                }
+                widest::kept(disparities, candidates, of_right, kept);
+            },
+        );
     }
 
     /// A row whose columns are whole registers of AVX2.

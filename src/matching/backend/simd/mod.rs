@@ -56,7 +56,7 @@ use crate::imaging::{census_plus4, census_ring8};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::{part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
-use crate::matching::memory::winners::Select;
+use crate::matching::memory::winners::{Select, WinnerRows};
 use crate::units::Disparity;
 
 /// The kernels of a 64-bit processor, or of WebAssembly.
@@ -100,6 +100,19 @@ impl Backend {
             Self::Avx2(avx2) => avx2.run(work),
             Self::Avx512(avx512) => avx512.run(work),
             Self::Planes | Self::Lanes => work(),
+        }
+    }
+}
+
+impl Backend {
+    /// The disparity that each winner's partner keeps, with room for a byte more a winner.
+    fn keep(self, winners: &WinnerRows<'_>, candidates: usize, right: &mut [u16], room: [&mut [u8]; 2]) {
+        match self {
+            Self::Avx512(avx512) => avx512.keep(winners, candidates, right, room),
+            _ => {
+                let [kept, _] = room;
+                left_right_rows::keep(winners.costs, winners.disparities, right, kept);
+            }
         }
     }
 }
@@ -177,10 +190,7 @@ impl Isa for Backend {
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
         let room = [&mut *kept, &mut *fractions].map(|row| part_mut(row, ..winners.costs.len()));
-        match self {
-            Self::Avx512(avx512) => avx512.keep(&winners, usize::from(rules.ceiling) + 1, right, room),
-            _ => left_right_rows::keep(winners.costs, winners.disparities, right, kept),
-        }
+        self.keep(&winners, usize::from(rules.ceiling) + 1, right, room);
         self.in_vectors(
             #[inline(always)]
             || left_right_rows::answer::<P>(&winners, kept, rules, fractions, answers, flags),
@@ -275,6 +285,9 @@ pub(in crate::matching) fn columns_begin(memory: &[u8], count: usize) -> u8 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    extern crate std;
+    use std::vec;
+    use std::vec::Vec;
 
     #[test]
     fn columns_begin_with_a_line_of_the_cache_where_there_is_room() {
@@ -286,6 +299,42 @@ mod tests {
             let before = memory.as_ptr().addr().next_multiple_of(LINE) - memory.as_ptr().addr();
             let has_room = before + count <= memory.len();
             assert_eq!(begin, if has_room { before } else { 0 }, "{first} {count}");
+        }
+    }
+
+    #[test]
+    fn a_partner_keeps_the_cheapest_and_nearest_winner() {
+        let mut state = 1u32;
+        let mut chance = |below: usize| {
+            state = state.wrapping_mul(0x9e37_79b1).wrapping_add(0x7f4a_7c15);
+            (state >> 8) as usize % below
+        };
+        for width in [1, 2, 31, 63, 64, 65, 100, 127, 128, 129, 300] {
+            for candidates in [16, 31, 32, 33, 64, 65, 128, 192, 193, 256] {
+                // Few costs, so that many are equal, those that nobody beats among them.
+                let mut costs: Vec<u8> = (0..width).map(|_| [0, 7, 8, 255][chance(4)]).collect();
+                let mut disparities: Vec<u8> =
+                    (0..width).map(|x| chance(candidates.min(x + 1)) as u8).collect();
+                let offered: Vec<_> = costs.iter().zip(&disparities).map(|(&cost, &d)| (cost, d)).collect();
+                let partner = |x: usize| x - usize::from(offered[x].1);
+                let kept = |x: usize| {
+                    let all = (0..width).filter(|&other| partner(other) == partner(x));
+                    all.map(|other| offered[other]).min().map(|(_, disparity)| disparity).unwrap()
+                };
+                let expected: Vec<u8> = (0..width).map(kept).collect();
+                for kernel in Kernel::available() {
+                    let (mut right, mut found, mut room) = (vec![0; width], vec![0; width], vec![0; width]);
+                    let winners = WinnerRows {
+                        below: &mut [],
+                        above: &mut [],
+                        costs: &mut costs,
+                        disparities: &mut disparities,
+                    };
+                    let backend = Backend::of(kernel).unwrap();
+                    backend.keep(&winners, candidates, &mut right, [&mut found, &mut room]);
+                    assert_eq!(found, expected, "{kernel:?}: {width} columns, {candidates} candidates");
+                }
+            }
         }
     }
 

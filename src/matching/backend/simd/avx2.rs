@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, LANES_AFTER, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -124,6 +124,26 @@ impl<const BY_AVX512: bool> Group for Bytes32<BY_AVX512> {
             Self(_mm256_broadcastb_epi8(_mm_minpos_epu16(halves)))
         })
     }
+
+    #[inline(always)]
+    fn last_least_by_keys(cells: &[Self]) -> (u8, usize) {
+        safely!({
+            let mut least = _mm256_set1_epi8(-1);
+            for (cell, after) in cells.iter().zip(Self::groups(LANES_AFTER)) {
+                let after = Self::of_bytes(*after).0;
+                let keys = (_mm256_unpacklo_epi8(after, cell.0), _mm256_unpackhi_epi8(after, cell.0));
+                least = _mm256_min_epu16(least, _mm256_min_epu16(keys.0, keys.1));
+            }
+            least_key(_mm_min_epu16(_mm256_castsi256_si128(least), _mm256_extracti128_si256(least, 1)))
+        })
+    }
+}
+
+/// The least of eight keys: its number, and its place among 256 lanes.
+#[inline(always)]
+pub(super) fn least_key(keys: __m128i) -> (u8, usize) {
+    let key = safely!(_mm_cvtsi128_si32(_mm_minpos_epu16(keys)));
+    ((key >> 8) as u8, 255 - usize::from(key as u8))
 }
 
 impl<const BY_AVX512: bool> HalfWords for Bytes32<BY_AVX512> {

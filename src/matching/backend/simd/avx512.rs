@@ -1,9 +1,9 @@
 //! AVX-512 registers. Only the code that is compiled for AVX-512, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::avx2::{lanes_after, lanes_before};
+use super::avx2::{lanes_after, lanes_before, least_key};
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, LANES_AFTER, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::slices::part;
 use core::arch::x86_64::*;
@@ -100,6 +100,20 @@ impl Group for Widest {
             // The lesser byte of each half-word, of which one instruction finds the least.
             let halves = _mm_min_epu8(quarter, _mm_srli_epi16(quarter, 8));
             Self(_mm512_broadcastb_epi8(_mm_minpos_epu16(halves)))
+        })
+    }
+
+    #[inline(always)]
+    fn last_least_by_keys(cells: &[Self]) -> (u8, usize) {
+        safely!({
+            let mut least = _mm512_set1_epi8(-1);
+            for (cell, after) in cells.iter().zip(Self::groups(LANES_AFTER)) {
+                let after = Self::of_bytes(*after).0;
+                let keys = (_mm512_unpacklo_epi8(after, cell.0), _mm512_unpackhi_epi8(after, cell.0));
+                least = _mm512_min_epu16(least, _mm512_min_epu16(keys.0, keys.1));
+            }
+            let half = _mm256_min_epu16(_mm512_castsi512_si256(least), _mm512_extracti64x4_epi64(least, 1));
+            least_key(_mm_min_epu16(_mm256_castsi256_si128(half), _mm256_extracti128_si256(half, 1)))
         })
     }
 }

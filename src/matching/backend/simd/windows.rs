@@ -91,7 +91,7 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
                 *sum = sum.or(G::of_bytes(mask));
             }
         }
-        let (least, lane) = G::last_least(masked.cells(stride));
+        let (least, lane) = G::last_least_by_keys(masked.cells(stride));
         (*cost, *disparity) = (least, (stride - 1).wrapping_sub(lane) as u8);
         (*below, *above) = beside(stride, *disparity, candidates, |lane| G::lane(&masked.0, lane));
         unique.check(

@@ -79,6 +79,14 @@ pub trait Group: Copy + 'static {
     }
     /// The number in one of the lanes of all cells.
     fn lane(cells: &[Self], lane: usize) -> u8;
+    /// The numbers in two lanes.
+    #[inline(always)]
+    fn lanes(self, lanes: [usize; 2]) -> [u8; 2] {
+        lanes.map(
+            #[inline(always)]
+            |lane| Self::lane(&[self], lane),
+        )
+    }
     /// Puts 255 in one of the lanes of all cells and in [`BESIDE`](crate::matching::memory::winners::BESIDE)
     /// to each side of it.
     fn raise_around(cells: &mut [Self], lane: usize);

@@ -104,6 +104,16 @@ impl Group for Widest {
     }
 
     #[inline(always)]
+    fn lanes(self, [a, b]: [usize; 2]) -> [u8; 2] {
+        let [a, b, ..] = safely!({
+            let lanes = _mm512_castsi128_si512(_mm_cvtsi32_si128((a | b << 8) as i32));
+            _mm_cvtsi128_si32(_mm512_castsi512_si128(_mm512_permutexvar_epi8(lanes, self.0)))
+        })
+        .to_le_bytes();
+        [a, b]
+    }
+
+    #[inline(always)]
     fn last_least_by_keys(cells: &[Self]) -> (u8, usize) {
         safely!({
             let mut least = _mm512_set1_epi8(-1);

@@ -93,7 +93,12 @@ pub(super) fn row<S: WindowParameters, G: Group, const CELLS: usize, const ALL: 
         }
         let (least, lane) = G::last_least_by_keys(masked.cells(stride));
         (*cost, *disparity) = (least, (stride - 1).wrapping_sub(lane) as u8);
-        (*below, *above) = beside(stride, *disparity, candidates, |lane| G::lane(&masked.0, lane));
+        let is_inside = *disparity > 0 && usize::from(*disparity) + 1 < candidates;
+        (*below, *above) = match masked.0.as_slice() {
+            // Not read from memory, where it is written at this moment.
+            [cell] if G::IS_A_LINE && is_inside => cell.lanes([lane + 1, lane.wrapping_sub(1)]).into(),
+            _ => beside(stride, *disparity, candidates, |lane| G::lane(&masked.0, lane)),
+        };
         unique.check(
             begin + x,
             least,

@@ -21,8 +21,8 @@ use crate::matching::memory::views::view;
 
 /// Candidates that tables serve at a time, at most.
 const MOST: usize = 64;
-/// So many columns less than half of the candidates are in no window of a pixel that has the other half: the first
-/// pixel that has it is one window on.
+/// How many columns less than half of the candidates stand before the windows of pixels that have the other
+/// half: the first of these pixels takes off the column before its window.
 const FEW_LESS: usize = rows::ACROSS / 2 + 1;
 /// The high four bits of each byte.
 const HIGH: u32 = 0xf0f0_f0f0;

@@ -71,8 +71,8 @@ pub trait Group: Copy + 'static {
 
     /// The least number of eight bits of all cells, and the last lane that has it.
     fn last_least(cells: &[Self]) -> (u8, usize);
-    /// [`Self::last_least`], which may take fewer steps one after the other, but moves more bytes: each number goes
-    /// into a half-word, above how many lanes there are after it.
+    /// [`Self::last_least`], which may take fewer steps one after the other, but moves more bytes: each
+    /// number goes into a half-word, above how many lanes there are after it.
     #[inline(always)]
     fn last_least_by_keys(cells: &[Self]) -> (u8, usize) {
         Self::last_least(cells)

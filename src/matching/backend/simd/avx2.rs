@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, LANES_AFTER, by_half_words, half_words, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -41,6 +41,17 @@ pub(super) const fn lanes_after<const LANES: usize>() -> [u8; LANES] {
         lanes
     }
 }
+
+/// How many lanes there are after each of 256.
+pub(super) const LANES_AFTER: &[u8; 256] = &{
+    let mut lanes = [0; 256];
+    let mut lane = 0;
+    while lane < 256 {
+        lanes[lane] = 255 - lane as u8;
+        lane += 1;
+    }
+    lanes
+};
 
 /// Calls of intrinsics.
 macro_rules! safely {

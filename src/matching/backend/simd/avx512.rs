@@ -1,9 +1,9 @@
 //! AVX-512 registers. Only the code that is compiled for AVX-512, behind its proof, makes one.
 #![allow(unsafe_code)]
 
-use super::avx2::{lanes_after, lanes_before, least_key};
+use super::avx2::{LANES_AFTER, lanes_after, lanes_before, least_key};
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, LANES_AFTER, by_half_words, half_words, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::slices::part;
 use core::arch::x86_64::*;
@@ -219,8 +219,8 @@ pub(super) const FEW: usize = 32;
 /// Of how many candidates lanes modulo 256 are told apart by [`kept`].
 pub(super) const MOST: usize = 192;
 
-/// [`offer`](crate::matching::backend::portable::left_right_rows::offer) of winners among few candidates, to 64
-/// right columns at a time, of which the disparities alone are kept: four instructions for 64 evaluations,
+/// [`offer`](crate::matching::backend::portable::left_right_rows::offer) of winners among few candidates, to
+/// 64 right columns at a time, of which the disparities alone are kept: four instructions for 64 evaluations,
 /// whatever the picture.
 #[inline(always)]
 pub(super) fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: &mut [u8]) {
@@ -278,8 +278,8 @@ impl Kept {
         Self { costs: none, disparities: none, last: Widest::splat(candidates as u8) }
     }
 
-    /// Offers the winners that are the next nearer candidate, among the left pixels that it would be of: their
-    /// costs and disparities. Of equal costs the nearest stays.
+    /// Offers the winners that are the next nearer candidate, among the left pixels that it would be of:
+    /// their costs and disparities. Of equal costs the nearest stays.
     #[inline(always)]
     fn offer(&mut self, [costs, disparities]: [Widest; 2]) {
         self.last = self.last.minus(Widest::splat(1));

@@ -138,18 +138,6 @@ pub(super) const AROUND: &[u8; 512] = &{
     around
 };
 
-/// How many lanes there are after each of 256.
-#[cfg(target_arch = "x86_64")]
-pub(super) const LANES_AFTER: &[u8; 256] = &{
-    let mut lanes = [0; 256];
-    let mut lane = 0;
-    while lane < 256 {
-        lanes[lane] = 255 - lane as u8;
-        lane += 1;
-    }
-    lanes
-};
-
 /// How many bits of two codes of four bits differ.
 pub(super) const BITS_APART_OF_FOUR: &[[u8; 16]; 16] = &{
     let mut apart = [[0; 16]; 16];

@@ -3,7 +3,7 @@
 //! which are there for all other numbers.
 //!
 //! * `reverse`: the right codes from right to left.
-//! * `tables`: costs into columns.
+//! * `tables`: costs into columns, by macros for a `column`.
 //! * `begin`: the sums of the first windows; `windows`: columns into windows and winners, by macros for a
 //!   `pixel`.
 #![allow(unsafe_code)]
@@ -20,6 +20,8 @@ macro_rules! if_twice {
 
 mod any;
 mod begin;
+#[macro_use]
+mod column;
 #[macro_use]
 mod pixel;
 mod reverse;

@@ -8,10 +8,9 @@
 //! r4-r7   columns, then places              r10, r11   the next column that enters, and that leaves
 //! r12     where sums are                    lr         the next winner; or the mask of a column's digits
 //! sp      eight bytes for every block: the places of its first word and of its second; then what ends the
-//!         loop and the next winner
-//!         in the loop for few candidates also the disparity before the last candidate, and masks of those that
-//!         are none; the bytes of a column's others, and where sums begin; which sixteens are left out, and the
-//!         lane numbers
+//!         loop, and the next winner; in the loop for few candidates also the disparity before the last one,
+//!         masks of those that are none, the bytes of a column's others, where sums begin, which sixteens are
+//!         left out, and the lane numbers
 //! ```
 
 /// Sixteen window sums one column on: 12 instructions, and 8 more where only some digits of the columns

@@ -23,9 +23,9 @@ static MASKS: [u8; 32] = {
     masks
 };
 
-/// The loop for all candidates: how many bytes after the first sum `r12` stands before a pixel, and how many once
-/// its sums are read; what makes up for what the pointers moved otherwise than they should; where the places of
-/// later blocks stand; and the blocks.
+/// The loop for all candidates: how many bytes after the first sum `r12` stands before a pixel, and how many
+/// once its sums are read; what makes up for what the pointers moved otherwise than they should; where the
+/// places of later blocks stand; and the blocks.
 macro_rules! winners {
     ($name:ident, $rounds:tt, $digits:ident, $stride:literal $ends:ident,
         ($before:literal, $after:literal, $back:literal), [$($at:literal),*],

@@ -246,8 +246,7 @@ pub(super) fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: 
     }
 }
 
-/// [`kept`](crate::matching::backend::portable::left_right_rows::kept) of 64 winners at a time, by the
-/// disparities that right columns keep.
+/// What the partners of 64 winners at a time keep, by the disparities that right columns keep.
 #[inline(always)]
 pub(super) fn kept(disparities: &[u8], candidates: usize, right: &[u8], kept: &mut [u8]) {
     for (x, (kept, disparities)) in kept.chunks_mut(BYTES).zip(disparities.chunks(BYTES)).enumerate() {

@@ -85,7 +85,8 @@ macro_rules! by_tables {
             // columns, which there are: one in a round; or two, but for one in the first if what is left of
             // `count` is odd. From the tables they read, for four bits, half as many bytes as there are
             // candidates of the code's line from the pixel's place on, the last of which is `count - 1`:
-            // inside of the line. The stack and the two registers that no operand may be are left as they were.
+            // inside of the line. The stack and the two registers that no operand may be are left as they
+            // were.
             unsafe {
                 let (few, end) = (sums.add(few), sums.add(count));
                 add_all!($bits, $stride, $rounds, all, rest, sums, few, end, place, enters, leaves);

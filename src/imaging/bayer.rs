@@ -11,9 +11,10 @@ use crate::camera::{
 /// `g(x, y) = (p(x, y) + p(x + 1, y) + p(x, y + 1) + p(x + 1, y + 1) + 2) / 4`. In every Bayer pattern these
 /// are one red, two green and one blue, `(R + 2 G + B) / 4`, half a pixel to the right and below. Both
 /// cameras shift alike, which leaves disparities unchanged. The last column and the last row repeat the means
-/// before them.
+/// before them; an image of one row is its own row below.
 ///
-/// A row needs the line below, so that the source is one line ahead; where that line is lost, so is the row.
+/// A row needs the line below, so that the source is one line ahead; where that line is lost, so is the row,
+/// and the last row where the line above it is.
 /// The capacities are `W` pixels and `RAW` bytes.
 #[derive(Debug)]
 pub struct BayerLines<S, const W: usize, const RAW: usize> {
@@ -22,8 +23,12 @@ pub struct BayerLines<S, const W: usize, const RAW: usize> {
     /// The line ahead and the one above it, 8 bits per pixel.
     ahead: [u8; W],
     above: [u8; W],
-    /// Row and time of the line ahead; `None` before the first and after the last line of a frame.
+    /// Row and time of the line ahead, where it is the next one to be given.
     start: Option<LineStart>,
+    /// Row of the line ahead; `None` before a frame's first line.
+    row: Option<u16>,
+    /// Whether the line above is of the row above the line ahead.
+    is_adjacent: bool,
 }
 
 impl<S: LineSource, const W: usize, const RAW: usize> BayerLines<S, W, RAW> {
@@ -35,7 +40,8 @@ impl<S: LineSource, const W: usize, const RAW: usize> BayerLines<S, W, RAW> {
                 return Err(CameraError::BufferTooShort { needed });
             }
         }
-        Ok(Self { source, raw: [0; RAW], ahead: [0; W], above: [0; W], start: None })
+        let (start, row, is_adjacent) = (None, None, false);
+        Ok(Self { source, raw: [0; RAW], ahead: [0; W], above: [0; W], start, row, is_adjacent })
     }
 
     /// Releases the source.
@@ -43,11 +49,14 @@ impl<S: LineSource, const W: usize, const RAW: usize> BayerLines<S, W, RAW> {
         self.source
     }
 
-    /// Reads the next line of the source; the line that was ahead becomes the one above.
+    /// Reads the next line of the source; the line that was ahead becomes the one above. Without a line,
+    /// nothing changes.
     fn fetch(&mut self, format: &LineFormat) -> Result<LineStart, CameraError<S::Error>> {
-        core::mem::swap(&mut self.ahead, &mut self.above);
         let start = self.source.next_line(&mut self.raw)?;
+        core::mem::swap(&mut self.ahead, &mut self.above);
         to_grey(format.pixel, &self.raw, self.ahead.get_mut(..usize::from(format.width)).unwrap_or_default());
+        self.is_adjacent = self.row.is_some_and(|above| above.saturating_add(1) == start.row);
+        self.row = Some(start.row);
         Ok(start)
     }
 }
@@ -62,7 +71,7 @@ impl<S: LineSource, const W: usize, const RAW: usize> LineSource for BayerLines<
     }
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<S::Error>> {
-        self.start = None;
+        (self.start, self.row) = (None, None);
         self.source.start_frame()
     }
 
@@ -75,16 +84,22 @@ impl<S: LineSource, const W: usize, const RAW: usize> LineSource for BayerLines<
             None => self.fetch(&format)?,
         };
         if own.row.saturating_add(1) < format.height {
-            // What fails is the line below, and with it this row: the caller's next call is for the row
-            // below.
-            let below = self.fetch(&format)?;
-            self.start = Some(below);
-            if below.row != own.row.saturating_add(1) {
-                return Err(CameraError::LineLost(LineFault::Dropped));
+            match self.fetch(&format) {
+                Ok(below) => self.start = Some(below),
+                Err(error) => {
+                    // What fails is the line below, and with it this row: the caller's next call is for the
+                    // row below. A line that is not there yet has not failed.
+                    self.start = matches!(error, CameraError::WouldBlock).then_some(own);
+                    return Err(error);
+                }
             }
         }
         // The frame's last row has none below: `above` and `ahead` are still those of the row before it.
-        mean_of_four(&self.above, &self.ahead, line);
+        let above = if format.height == 1 { &self.ahead } else { &self.above };
+        if format.height > 1 && !self.is_adjacent {
+            return Err(CameraError::LineLost(LineFault::Dropped));
+        }
+        mean_of_four(above, &self.ahead, line);
         Ok(own)
     }
 }

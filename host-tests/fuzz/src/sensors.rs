@@ -4,7 +4,7 @@ use arbitrary::{Result, Unstructured};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
 use stereopsis::camera::{
-    Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window,
+    Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window,
 };
 use stereopsis::focus::{Dw9714, Slew};
 
@@ -69,6 +69,8 @@ fn mt9v034(u: &mut Unstructured<'_>, clock_hz: u32) -> Result<()> {
     }
     let mut sensor = Mt9v034::new(Bus(u), 0x48, clock_hz);
     for (call, left, top, width, height, binning, number) in calls {
+        let binning =
+            [Mt9v034Binning::One, Mt9v034Binning::Two, Mt9v034Binning::Four][usize::from(binning % 3)];
         let done = match call % 9 {
             0 => sensor.identify(),
             1 => sensor.set_mode(Mt9v034Mode::Snapshot),

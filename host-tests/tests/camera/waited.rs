@@ -7,8 +7,8 @@ use embedded_hal_mock::eh1::i2c::Mock;
 use std::pin::pin;
 use std::task::{Context, Poll, Waker};
 use stereopsis::camera::{
-    AsyncHm01b0, AsyncMt9v034, Hm01b0Mode, Hm01b0Size, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window,
-    SensorError,
+    AsyncHm01b0, AsyncMt9v034, Hm01b0Mode, Hm01b0Size, Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern,
+    Mt9v034Window, SensorError,
 };
 
 /// The end of what never has to wait, as the mock's transactions do not.
@@ -23,7 +23,7 @@ fn now<T>(future: impl Future<Output = T>) -> T {
 fn a_mt9v034_is_set_up_register_by_register() {
     let (mut bus, mut reset) = (Mock::new(&mt9v034_session()), reset_pin());
     let mut sensor = AsyncMt9v034::new(bus.clone(), AT, CLOCK_HZ);
-    let window = Mt9v034Window { left: 56, top: 0, width: 640, height: 480, binning: 2 };
+    let window = Mt9v034Window { left: 56, top: 0, width: 640, height: 480, binning: Mt9v034Binning::Two };
     let session = async {
         sensor.initialise(&mut reset, &mut NoopDelay::new()).await?;
         sensor.set_mode(Mt9v034Mode::Snapshot).await?;

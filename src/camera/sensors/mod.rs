@@ -64,7 +64,7 @@ pub use hm01b0::AsyncHm01b0;
 pub use hm01b0::{Hm01b0, Hm01b0Mode, Hm01b0Size};
 #[cfg(feature = "async")]
 pub use mt9v034::AsyncMt9v034;
-pub use mt9v034::{Mt9v034, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
+pub use mt9v034::{Mt9v034, Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
 use core::fmt;
 

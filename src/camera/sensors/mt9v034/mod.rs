@@ -11,7 +11,7 @@
 
 mod settings;
 
-pub use settings::{Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
+pub use settings::{Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
 use super::{ExposureControl, Outcome, SensorError, within};
 use embedded_hal::digital::OutputPin;
@@ -116,12 +116,12 @@ macro_rules! driver {
         pub $($async)? fn set_window(&mut self, window: Mt9v034Window) -> Outcome<I> {
             let Mt9v034Window { left, top, width, height, binning } = window;
             // The least blanking grows by ten clocks for each binned column.
-            let (bits, least_blanking) = match binning {
-                1 => (0, 61),
-                2 => (1, 71),
-                4 => (2, 91),
-                _ => return Err(SensorError::OutOfRange { least: 1, most: 4 }),
+            let least_blanking = match binning {
+                Mt9v034Binning::One => 61,
+                Mt9v034Binning::Two => 71,
+                Mt9v034Binning::Four => 91,
             };
+            let bits = binning as u16;
             within(width.into(), 1, u32::from(752_u16.saturating_sub(left)))?;
             within(height.into(), 1, u32::from(480_u16.saturating_sub(top)))?;
             let blanking = LEAST_ROW_CLOCKS.saturating_sub(width).max(least_blanking);
@@ -139,7 +139,7 @@ macro_rules! driver {
         /// Sets whether rows are read from below and columns from the right, for a sensor mounted upside
         /// down.
         pub $($async)? fn set_flips(&mut self, rows: bool, columns: bool) -> Outcome<I> {
-            let bits = u16::from(self.window.binning.trailing_zeros() as u8);
+            let bits = self.window.binning as u16;
             let flips = u16::from(rows) << 4 | u16::from(columns) << 5;
             self.write(READ_MODE, READ | flips | bits << 2 | bits)$($wait)*
         }
@@ -219,7 +219,7 @@ macro_rules! driver {
 
         /// Lines of a frame.
         fn rows_read(&self) -> u32 {
-            u32::from(self.window.height) / u32::from(self.window.binning.max(1))
+            u32::from(self.window.height >> self.window.binning as u16)
         }
 
         /// Duration of rows, rounded up, microseconds.

@@ -28,13 +28,26 @@ pub struct Mt9v034Window {
     pub width: u16,
     /// Number of rows, at most 480.
     pub height: u16,
-    /// Columns and rows that are binned to one pixel: 1, 2 or 4.
-    pub binning: u8,
+    /// Columns and rows that make one pixel.
+    pub binning: Mt9v034Binning,
+}
+
+/// Binning of a [`Mt9v034Window`], along its rows and its columns alike.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum Mt9v034Binning {
+    /// Every pixel of the array is one of the picture.
+    One = 0,
+    /// Two by two pixels are one.
+    Two = 1,
+    /// Four by four pixels are one.
+    Four = 2,
 }
 
 impl Mt9v034Window {
     /// Whole array without binning.
-    pub const WHOLE: Self = Self { left: 0, top: 0, width: 752, height: 480, binning: 1 };
+    pub const WHOLE: Self = Self { left: 0, top: 0, width: 752, height: 480, binning: Mt9v034Binning::One };
 }
 
 /// Test pattern that the sensor sends instead of the picture.

@@ -1,13 +1,15 @@
 //! A frame in bands of rows, one pipeline each: what a chip with two cores does.
 
 use super::Pipeline;
+use super::reach::reach_of_checks;
 use crate::matching::{Config, Method};
 use core::ops::Range;
 
 /// Rows of a frame that one pipeline gives, and the lines that it takes for them.
 ///
 /// With [`Fast`](crate::matching::Fast) and [`Block`](crate::matching::Block) every row is bit-equal to that
-/// of one pipeline over the whole frame, because a band takes more lines than it gives rows:
+/// of one pipeline over the whole frame, because a band takes more lines than it gives rows. A check of open
+/// places, which reach down from the image's first row, is the exception: for a band it is its own first row.
 ///
 /// * below, as many as a row waits for ([`Pipeline::LATENCY`]);
 /// * above, as many again, for windows and for the uncertainty, which looks back at finished rows; one for
@@ -70,8 +72,7 @@ impl Band {
     pub fn split<S: Method>(config: &Config, most: u16) -> Bands {
         let height = usize::from(config.height);
         let below = Pipeline::<S, 0, 0>::LATENCY;
-        let checks = &config.checks;
-        let above = below + usize::from(checks.median) + usize::from(checks.speckle_pixels);
+        let above = below + reach_of_checks(&config.checks);
         let bands = |lines| Bands { from: 0, height, above, below, lines };
         let most = usize::from(most).max(1);
         // Bands of more lines are no more bands. One of as many lines as the frame has is enough, and fewer

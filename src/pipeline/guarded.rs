@@ -2,6 +2,7 @@
 
 use super::counters::{FaultCounters, count};
 use super::lines::LineGuard;
+use super::reach::reach_down;
 use super::{Pipeline, PipelineError, PushError};
 use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
 use crate::matching::{
@@ -20,8 +21,8 @@ use crate::matching::{
 /// * every other row is bit-equal to that without the fault.
 ///
 /// With [`Fast`](crate::matching::Fast) and [`Block`](crate::matching::Block) a lost line affects
-/// [`Pipeline::LATENCY`] rows up and [`Self::reach_down`] rows down; along paths it affects the rest of the
-/// frame.
+/// [`Pipeline::LATENCY`] rows up and [`Self::reach_down`] rows down; along paths, and where open places are
+/// looked for, it affects the rest of the frame.
 ///
 /// A frame ends early after more lost lines than allowed, lost sync, or rows that run backwards. The next
 /// frame is as good as the first.
@@ -105,15 +106,9 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         self.pipeline.config()
     }
 
-    /// Returns how many rows below a lost line are flagged; `usize::MAX` along paths.
+    /// Returns how many rows below a lost line are flagged; `usize::MAX` for the rest of the frame.
     pub fn reach_down(&self) -> usize {
-        // Answers that are smoothed down the columns rest on the row above as it came out, and so does a
-        // path.
-        if S::VERTICAL_FILTER {
-            return usize::MAX;
-        }
-        let checks = &self.config().checks;
-        Pipeline::<S, W, D>::LATENCY + usize::from(checks.median) + usize::from(checks.speckle_pixels)
+        Pipeline::<S, W, D>::LATENCY.saturating_add(reach_down::<S>(&self.config().checks))
     }
 
     /// Waits for the camera's next frame, and drops the one before.

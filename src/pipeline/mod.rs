@@ -92,6 +92,7 @@ mod counters;
 mod error;
 mod guarded;
 mod lines;
+mod reach;
 mod live;
 mod waited;
 pub mod winners;

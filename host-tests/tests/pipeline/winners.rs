@@ -167,7 +167,7 @@ fn a_lost_row_costs_its_answers_and_flags_what_rests_on_it() {
         assert_eq!(pipeline.lost(), 1, "{row} {fault:?}");
         for (y, (found, own)) in rows.iter().zip(&expected).enumerate() {
             let is_flagged = found.1.iter().all(|flags| flags.contains(PixelFlags::DAMAGED));
-            assert_eq!(is_flagged, (row.saturating_sub(4)..=row + 6).contains(&y), "{row} {fault:?} {y}");
+            assert_eq!(is_flagged, (row.saturating_sub(4)..=row + 10).contains(&y), "{row} {fault:?} {y}");
             assert!(is_flagged || found == own, "{row} {fault:?} {y}");
             let has_answers = found.0.iter().any(|answer| answer.is_some());
             assert_eq!(has_answers, y != row, "{row} {fault:?} {y}");

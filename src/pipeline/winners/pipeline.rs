@@ -7,6 +7,7 @@ use crate::matching::{
     Capacity, Config, External, MatchError, Matcher, Method, Row, Supported, WinnerRecord,
 };
 use crate::pipeline::PushError;
+use crate::pipeline::reach::reach_down;
 
 /// The rows of the method `S`, of winners that a [`WinnerSource`] computes, in memory that grows with the
 /// width alone.
@@ -16,8 +17,9 @@ use crate::pipeline::PushError;
 ///
 /// Up to [`Self::set_most_lost`] rows of a frame may be late, short or damaged; by default the first ends it.
 /// Such a row has no answers, and [`DAMAGED`](crate::units::PixelFlags::DAMAGED) on every pixel. Rows that it
-/// can affect through checks keep their answers and have the flag: four above it, and as many below as the
-/// speckle filter counts; along paths the rest of the frame. Every other row is bit-equal.
+/// can affect through checks keep their answers and have the flag: four above it, and four more below than
+/// the speckle filter counts; along paths, and where open places are looked for, the rest of the frame.
+/// Every other row is bit-equal.
 pub struct WinnerPipeline<S: Method, const W: usize, const D: usize>
 where
     External<S>: Method,
@@ -263,12 +265,8 @@ where
     fn mark(&mut self) {
         let (Some(row), Some(last)) = (self.matcher.row(), self.last_lost) else { return };
         let row = usize::from(row.index());
-        let checks = &self.matcher.config().checks;
-        let reach = if S::VERTICAL_FILTER {
-            usize::MAX
-        } else {
-            usize::from(checks.median) + usize::from(checks.speckle_pixels)
-        };
+        // Uncertainty and confidence look back at as many finished rows as an answer rests on below it.
+        let reach = LOOK_AHEAD.saturating_add(reach_down::<S>(&self.matcher.config().checks));
         // The rows of winners between this one and the newest, which there are fewer of below the image.
         let newest = (self.taken - 1).saturating_sub(S::RADIUS_Y).min(self.height - 1);
         let is_lost = self.lost_rows >> (newest - row).min(7) & 1 != 0;

@@ -58,8 +58,8 @@ macro_rules! c_api_of_driving {
             unsafe { $crate::ffi::drive_stopping_mm(handle, speed_mm_s, stopping_mm) }
         }
 
-        /// Decides on the last finished frame of a finder, at a speed. In this order: blind where the frame
-        /// is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
+        /// Decides on the frame of a finder that was finished last, at a speed. In this order: blind where
+        /// another one has begun since, or the frame is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
         /// found, or too little of it is seen; slow down for what is within twice the stopping distance or
         /// the time to contact; clear. No hardware is called.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_drive_decide"))]
@@ -73,8 +73,8 @@ macro_rules! c_api_of_driving {
             unsafe { $crate::ffi::drive_decide(handle, obstacles, speed_mm_s, verdict) }
         }
 
-        /// Returns the speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, 0 for a
-        /// period of 0.
+        /// Returns the speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, and for
+        /// a period of 0.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_speed_mm_s"))]
         pub extern "C" fn stereopsis_speed_mm_s(step_mm: u16, period_us: u32) -> u16 {
             $crate::ffi::drive_speed_mm_s(step_mm, period_us)

@@ -64,6 +64,7 @@ pub struct CObstacleConfig {
 impl From<ObstacleError> for Status {
     fn from(e: ObstacleError) -> Self {
         match e {
+            ObstacleError::NotStarted => Self::NotStarted,
             ObstacleError::Cells => Self::ObstacleCells,
             ObstacleError::Sectors => Self::ObstacleSectors,
             ObstacleError::Pose => Self::ObstaclePose,

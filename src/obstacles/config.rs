@@ -165,6 +165,8 @@ impl Default for ObstacleConfig {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ObstacleError {
+    /// The finder was not started.
+    NotStarted,
     /// A cell's side is not 1 to 16 px, or its area is over 255 px.
     Cells,
     /// The number of sectors is not 1 to 32.
@@ -187,6 +189,7 @@ pub enum ObstacleError {
 }
 
 error_text!(ObstacleError {
+    Self::NotStarted => "the finder is not started",
     Self::Cells => "a cell must have sides of 1 to 16 px and at most 255 px",
     Self::Sectors => "there must be 1 to 32 sectors",
     Self::Pose => "the ground needs a height over zero, pitch and roll up to 500 mrad, and heights in order",

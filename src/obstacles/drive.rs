@@ -78,9 +78,9 @@ pub struct Verdict {
     pub stopping_mm: u16,
 }
 
-/// Speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most.
+/// Speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, and where the period is 0.
 pub fn speed_mm_s(step_mm: u16, period_us: u32) -> u16 {
-    let speed = (u64::from(step_mm) * 1_000_000).checked_div(u64::from(period_us)).unwrap_or(0);
+    let speed = (u64::from(step_mm) * 1_000_000).checked_div(u64::from(period_us)).unwrap_or(u64::MAX);
     speed.min(u16::MAX.into()) as u16
 }
 

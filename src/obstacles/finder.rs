@@ -186,7 +186,7 @@ impl ObstaclesView<'_> {
 
     /// Sets the pose of the camera from this frame on, as [`GroundSource::Given`] has it.
     pub fn set_pose(&mut self, pitch_mrad: i16, roll_mrad: i16, height_mm: u16) -> Result<(), ObstacleError> {
-        let Some(setup) = self.setup() else { return Ok(()) };
+        let setup = self.setup().ok_or(ObstacleError::NotStarted)?;
         let ground = GroundSource::Given { pitch_mrad, roll_mrad, height_mm };
         let config = ObstacleConfig { ground, ..setup.config };
         config.check()?;
@@ -228,15 +228,16 @@ impl ObstaclesView<'_> {
         (setup.columns > 0 && self.check_memory(setup).is_ok()).then_some(*setup)
     }
 
-    /// Why the last frame is not to be trusted, if it is not.
+    /// Why the last frame is not to be trusted, if it is not. From the begin of a frame to its end there is
+    /// none: [`BlindReason::NoFrame`].
     pub fn blind(&self) -> Option<BlindReason> {
         let is_finished = self.state.is_finished && self.setup().is_some();
         if is_finished { self.state.blind } else { Some(BlindReason::NoFrame) }
     }
 
-    /// The disparity of a cell of the last frame.
+    /// The disparity of a cell of the frame that was finished last, until the next one begins.
     pub fn cell(&self, column: usize, row: usize) -> Disparity {
-        let Some(setup) = self.setup() else { return Disparity::NONE };
+        let Some(setup) = self.setup().filter(|_| self.state.is_finished) else { return Disparity::NONE };
         let cell = self.cells.get(row * setup.columns + column).filter(|_| column < setup.columns);
         cell.copied().unwrap_or(Disparity::NONE)
     }

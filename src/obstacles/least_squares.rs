@@ -64,7 +64,7 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
             (d.is_some() && off.abs() <= band).then_some(off)
         };
         let mut next = i64::from(plane.lean) * cells.right_16ths(0);
-        let (mut n, mut p, mut x, mut pp, mut xp, mut xx) = (0_i32, 0_i32, 0_i32, 0_i32, 0_i64, 0_i32);
+        let (mut n, mut p, mut x, mut pp, mut xp, mut xx) = (0_i32, 0_i32, 0_i32, 0_i32, 0_i64, 0_i64);
         for (column, ((&d, &d_above), &d_below)) in (0..).zip(here.0.iter().zip(above.0).zip(below.0)) {
             // Twice as far as a row's parallax goes: what is cut off is near to no answer.
             let beside = (next >> 12).clamp(-(1 << 29), 1 << 29) as i32;
@@ -74,7 +74,7 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
                 continue;
             }
             (n, p, pp) = (n + 1, p + off_here, pp + off_here * off_here);
-            (x, xx) = (x + column, xx + column * column);
+            (x, xx) = (x + column, xx + i64::from(column * column));
             xp += i64::from(off_here * column);
         }
         if n == 0 {
@@ -84,7 +84,7 @@ fn sums(cells: &Cells<'_>, plane: &Ground, band: i32) -> Sums {
         let ([n, x, p], a) = ([n, x, p].map(i64::from), cells.halves(row));
         (sums.n, sums.a, sums.x, sums.p) = (sums.n + n, sums.a + a * n, sums.x + x, sums.p + p);
         (sums.aa, sums.ax, sums.ap) = (sums.aa + a * a * n, sums.ax + a * x, sums.ap + a * p);
-        (sums.xx, sums.xp, sums.pp) = (sums.xx + i64::from(xx), sums.xp + xp, sums.pp + i64::from(pp));
+        (sums.xx, sums.xp, sums.pp) = (sums.xx + xx, sums.xp + xp, sums.pp + i64::from(pp));
         sums.first_row.get_or_insert(row);
         sums.last_row = row;
     }

@@ -9,11 +9,11 @@ use crate::imaging::PairMonitor;
 use crate::units::{Disparity, PixelFlags};
 
 impl ObstaclesView<'_> {
-    /// Begins a frame. A frame that was not finished is forgotten.
+    /// Begins a frame. The one before is forgotten: until this one is finished, nothing can be decided.
     pub fn begin(&mut self) {
         self.state.watchdog = Watchdog::NEW;
         self.state.sky = self.setup().map_or(0, |setup| setup.sky(self.state.carried.ground));
-        self.state.next = 0;
+        (self.state.next, self.state.is_finished) = (0, false);
         self.filling.fill(Filling::EMPTY);
         self.cells.fill(Disparity::NONE);
         self.bins.fill(0);

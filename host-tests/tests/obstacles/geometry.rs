@@ -167,7 +167,7 @@ fn decisions_follow_the_stopping_distance() {
     // unless it is narrower than a column.
     let narrow = DriveConfig { corridor_mm: 10, ..config };
     assert!(matches!(DriveRule::new(narrow).decide(&view, 1220).decision, Decision::Stop(_)));
-    assert_eq!((speed_mm_s(20, 40_000), speed_mm_s(1, 0), speed_mm_s(60_000, 1)), (500, 0, u16::MAX));
+    assert_eq!((speed_mm_s(20, 40_000), speed_mm_s(1, 0), speed_mm_s(60_000, 1)), (500, u16::MAX, u16::MAX));
 }
 
 #[test]

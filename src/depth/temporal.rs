@@ -149,8 +149,9 @@ impl<'a> TemporalFilterView<'a> {
 impl TemporalConfig {
     fn pixel(&self, average: &mut Disparity, age: &mut u8, answer: Disparity) -> Provenance {
         if answer.is_none() {
+            let is_over = *age >= self.most_held;
             *age = age.saturating_add(1);
-            if average.is_none() || *age > self.most_held {
+            if average.is_none() || is_over {
                 *average = Disparity::NONE;
                 return Provenance::Nothing;
             }

@@ -60,6 +60,7 @@ impl From<FocusLineError> for Status {
     fn from(e: FocusLineError) -> Self {
         match e {
             FocusLineError::NoLineDue => Self::NoLineLeft,
+            FocusLineError::NotStarted => Self::NotStarted,
             FocusLineError::Length { .. } => Self::LineLength,
             FocusLineError::FrameIncomplete { .. } => Self::LinesMissing,
             FocusLineError::TooManyFrames => Self::FocusFrames,

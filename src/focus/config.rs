@@ -141,6 +141,8 @@ error_text!(FocusConfigError {
 pub enum FocusLineError {
     /// No frame was begun, or all lines of the frame have come.
     NoLineDue,
+    /// The stack was not started, or it is finished.
+    NotStarted,
     /// The line has another length than the configuration says.
     Length {
         /// What was due, px.
@@ -159,6 +161,7 @@ pub enum FocusLineError {
 
 error_text!(FocusLineError {
     Self::NoLineDue => "no line is due: begin a frame",
+    Self::NotStarted => "no stack is under way: start one",
     Self::Length { needed } => "a line of {needed} pixels is due",
     Self::FrameIncomplete { missing } => "{missing} lines of the frame are missing",
     Self::Scale => "a frame's scale must be from 1/2 to 2",

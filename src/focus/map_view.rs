@@ -84,7 +84,7 @@ impl<'a> FocusMapView<'a> {
     pub fn begin_frame(&mut self, breathing: Breathing) -> Result<(), FocusLineError> {
         let state = &mut *self.state;
         if !state.is_running {
-            return Err(FocusLineError::NoLineDue);
+            return Err(FocusLineError::NotStarted);
         }
         state.check_complete()?;
         if state.frames >= u16::MAX.into() {

@@ -220,3 +220,23 @@ fn rows_are_drawn_where_they_belong_near_is_bright() {
     // A range of nothing.
     assert_ne!(DisparityColours::new(pixels(9), pixels(9)).colour(pixels(9)), Rgb888::BLACK);
 }
+
+/// The longest holding ends, too.
+#[test]
+fn an_answer_is_held_for_as_many_frames_as_is_said() {
+    for most_held in [0, 1, 254, 255] {
+        let mut filter = TemporalFilter::<1, 1>::new(TemporalConfig { most_held, ..Default::default() });
+        let mut row = |answer| {
+            let (mut out, mut provenance) = ([Disparity::ZERO], [Provenance::New]);
+            filter.row(0, &[answer], &mut out, &mut provenance);
+            provenance[0]
+        };
+        assert_eq!(row(Disparity::from_raw(70)), Provenance::New);
+        for _ in 0..most_held {
+            assert_eq!(row(Disparity::NONE), Provenance::Held, "{most_held}");
+        }
+        for _ in 0..300 {
+            assert_eq!(row(Disparity::NONE), Provenance::Nothing, "{most_held}");
+        }
+    }
+}

@@ -204,7 +204,7 @@ fn memory_that_is_too_short_is_named() {
 #[test]
 fn what_does_not_fit_is_refused() {
     let mut map = FocusMap::<16, 4, 8>::new();
-    assert_eq!(map.begin_frame(Breathing::NONE), Err(FocusLineError::NoLineDue));
+    assert_eq!(map.begin_frame(Breathing::NONE), Err(FocusLineError::NotStarted));
     let config = FocusConfig { width: 16, height: 16, cell_px: 4, radius: 0, exposure_varies: true };
     for (config, error) in [
         (FocusConfig { width: 17, ..config }, FocusConfigError::Width { most: 16 }),

@@ -85,4 +85,7 @@ fn matrices_and_directions() {
     let bearing = json!([0.0, 0.0, 1.0]);
     let seen = json!({ "distance_m": 1.0, "sigma_m": 0.1, "bearing": bearing, "angle_rad": 0.1 });
     refused::<Sighting<f32>>(&seen, "/bearing/2", 0.0, "bearing");
+    for (field, number) in [("/distance_m", 0.0), ("/sigma_m", -0.1), ("/angle_rad", -1.0)] {
+        refused::<Sighting<f32>>(&seen, field, number, "must be positive");
+    }
 }

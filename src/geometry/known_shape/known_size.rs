@@ -23,12 +23,18 @@ pub struct Sighting<T: Real> {
 
 deserialize_checked! {
     Sighting<T> { distance_m: T, sigma_m: T, bearing: Vector3<T>, angle_rad: T }
-    by |stored| match Unit::try_new(stored.bearing, T::ZERO) {
-        Some(bearing) if bearing.iter().all(|x| x.is_finite()) => {
-            let Sighting { distance_m, sigma_m, angle_rad, .. } = stored;
-            Ok(Self { distance_m, sigma_m, bearing, angle_rad })
+    by |stored| {
+        let Sighting { distance_m, sigma_m, angle_rad, .. } = stored;
+        let is_seen = distance_m > T::ZERO && sigma_m >= T::ZERO && angle_rad > T::ZERO;
+        if !(is_seen && all_finite(&[distance_m, sigma_m, angle_rad])) {
+            return Err("distance and angle must be positive, the deviation not negative, and all finite");
         }
-        _ => Err("the bearing must be finite and not zero"),
+        match Unit::try_new(stored.bearing, T::ZERO) {
+            Some(bearing) if bearing.iter().all(|x| x.is_finite()) => {
+                Ok(Self { distance_m, sigma_m, bearing, angle_rad })
+            }
+            _ => Err("the bearing must be finite and not zero"),
+        }
     }
 }
 

@@ -247,6 +247,8 @@ impl From<ConfigError> for Status {
             ConfigError::Uniqueness => Self::Uniqueness,
             ConfigError::Smoothing => Self::Smoothing,
             ConfigError::SurfaceStep => Self::SurfaceStep,
+            ConfigError::OpenMargin => Self::OpenMargin,
+            ConfigError::MinConfidence => Self::MinConfidence,
             ConfigError::Gradient => Self::Gradient,
             ConfigError::Penalties => Self::Penalties,
         }

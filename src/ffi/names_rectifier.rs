@@ -103,11 +103,20 @@ macro_rules! c_api_of_rectification {
             unsafe { StereopsisRectifier::push(handle, left, right, length) }
         }
 
+        /// Takes the raw lines above again in place of lost ones, zeros for a frame's first ones, and returns
+        /// what `stereopsis_rectifier_push` does.
+        #[unsafe(export_name = concat!($($prefix,)? "stereopsis_rectifier_push_lost"))]
+        pub unsafe extern "C" fn stereopsis_rectifier_push_lost(handle: *mut RectifierHandle) -> Status {
+            // SAFETY: the caller keeps what the description asks for.
+            unsafe { StereopsisRectifier::push_lost(handle) }
+        }
+
         /// Writes the next rectified line of both cameras, in the order of their rows, `length` bytes each,
         /// which is the rectified width, for `stereopsis_push`. A pixel that a camera does not see is 0.
         ///
         /// Returns `STEREOPSIS_STATUS_OK` with lines, `STEREOPSIS_STATUS_NO_ROW_YET` where raw lines are
-        /// needed, and `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
+        /// needed, `STEREOPSIS_STATUS_LOST` for a row that needs a lost one, for `stereopsis_push_lost`, and
+        /// `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_rectifier_line"))]
         pub unsafe extern "C" fn stereopsis_rectifier_line(
             handle: *mut RectifierHandle,

@@ -169,26 +169,35 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Rectifier<W, N, SLOTS> 
         let push = || {
             // SAFETY: the caller's promise.
             let content = unsafe { Self::open(handle, [left, right], length) }?;
-            let pair = content.begun()?;
-            let [first, _] = pair.remaps();
-            if length != usize::from(first.table().raw_size().width) {
+            let width = content.begun()?.remaps()[0].table().raw_size().width;
+            if length != usize::from(width) {
                 return Err(Status::LineLength);
             }
-            if pair.next_row() >= first.table().size().height {
-                return Ok(Status::FrameDone);
-            }
-            if !pair.wants_lines() {
-                return Err(Status::LineWaiting);
-            }
-            for (to, from) in pair.next_lines().into_iter().zip([left, right]) {
-                // SAFETY: the caller's promise, and the line is apart from the state.
-                let from = unsafe { core::slice::from_raw_parts(from, length) };
-                to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
-            }
-            pair.accept();
-            Ok(if pair.wants_lines() { Status::NoRowYet } else { Status::Ok })
+            content.take(|pair| {
+                for (to, from) in pair.next_lines().into_iter().zip([left, right]) {
+                    // SAFETY: the caller's promise, and the line is apart from the state.
+                    let from = unsafe { core::slice::from_raw_parts(from, length) };
+                    to.iter_mut().zip(from).for_each(|(to, from)| *to = *from);
+                }
+                pair.accept();
+            })
         };
         either(push())
+    }
+
+    /// Takes the raw lines above again, in place of lost ones.
+    ///
+    /// # Safety
+    ///
+    /// `handle` is as [`Self::deinit`] asks.
+    pub unsafe fn push_lost(handle: *mut RectifierHandle) -> Status {
+        // SAFETY: the caller's promise.
+        either(unsafe { Self::open::<u8, 0>(handle, [], 0) }.and_then(|content| {
+            content.take(|pair| {
+                pair.repeat_lines();
+                pair.accept_replaced();
+            })
+        }))
     }
 
     /// Writes the next rectified lines.
@@ -210,6 +219,10 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Rectifier<W, N, SLOTS> 
             }
             if pair.wants_lines() {
                 return Ok(Status::NoRowYet);
+            }
+            if pair.is_damaged() {
+                pair.skip();
+                return Ok(Status::Lost);
             }
             pair.row(left, right)?;
             Ok(Status::Ok)

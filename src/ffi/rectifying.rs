@@ -48,13 +48,26 @@ pub const fn rectifier_bytes(width: usize, height: usize, lines: usize) -> usize
 }
 
 const fn bytes(width: usize, lines: usize, slots: usize) -> usize {
-    2 * (8 * slots + width * lines + width) + FIXED_BYTES
+    2 * (8 * slots + width * lines + width) + lines + FIXED_BYTES
 }
 
 impl<const W: usize, const N: usize, const SLOTS: usize> Rectifying<W, N, SLOTS> {
     /// Returns the remaps if a frame is under way.
     pub fn begun(&mut self) -> Result<&mut RemapPair<W, N, SLOTS>, Status> {
         if self.is_begun { Ok(&mut self.pair) } else { Err(Status::NotBegun) }
+    }
+
+    /// Takes the next raw lines as `accept` does, where some are due.
+    pub fn take(&mut self, accept: impl FnOnce(&mut RemapPair<W, N, SLOTS>)) -> Result<Status, Status> {
+        let pair = self.begun()?;
+        if pair.next_row() >= pair.remaps()[0].table().size().height {
+            return Ok(Status::FrameDone);
+        }
+        if !pair.wants_lines() {
+            return Err(Status::LineWaiting);
+        }
+        accept(pair);
+        Ok(if pair.wants_lines() { Status::NoRowYet } else { Status::Ok })
     }
 }
 

@@ -4,7 +4,7 @@ use crate::matching::MatchError;
 use crate::pipeline::PushError;
 
 /// Version of this interface, which changes when a program compiled with another header would go wrong.
-pub const STEREOPSIS_ABI: u32 = 6;
+pub const STEREOPSIS_ABI: u32 = 7;
 
 /// Result of a call; below 0 it is an error, and nothing has changed.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -23,6 +23,8 @@ pub enum Status {
     NoSlot = 4,
     /// Features: the list has no room for all matches.
     Dropped = 5,
+    /// Rectification: the row needs a raw line that was lost; `stereopsis_push_lost` tells the matcher.
+    Lost = 6,
     /// A pointer is null.
     Null = -1,
     /// A pointer is not aligned as what it points to has to be.
@@ -192,6 +194,10 @@ pub enum Status {
     ObstacleSize = -83,
     /// Obstacles: the ground is none of the `STEREOPSIS_GROUND_` numbers.
     ObstacleGround = -84,
+    /// Configuration: the margin of open places is over 127.
+    OpenMargin = -85,
+    /// Configuration: the least confidence is over 207.
+    MinConfidence = -86,
 }
 
 impl From<PushError> for Status {

@@ -5,13 +5,14 @@ use super::Status;
 use core::ffi::CStr;
 
 /// Text of every status, of which a program holds no more than [`PACKED`].
-const TEXTS: [(Status, &CStr); 90] = [
+const TEXTS: [(Status, &CStr); 93] = [
     (Status::Ok, c"done"),
     (Status::NoRowYet, c"the first row comes some lines later"),
     (Status::FrameDone, c"all rows of the frame are out"),
     (Status::NoLineYet, c"no line waits"),
     (Status::NoSlot, c"no slot is free: the line is lost"),
     (Status::Dropped, c"not all matches have room"),
+    (Status::Lost, c"the row needs a raw line that was lost"),
     (Status::Null, c"a pointer is null"),
     (Status::Misaligned, c"a pointer is misaligned"),
     (Status::MemoryTooShort, c"the memory is too short"),
@@ -96,10 +97,12 @@ const TEXTS: [(Status, &CStr); 90] = [
     (Status::ObstacleLimits, c"no deviation, or obstacles or drops of 0 mm"),
     (Status::ObstacleSize, c"no cells, or more than the finder takes"),
     (Status::ObstacleGround, c"there is no such source of the ground"),
+    (Status::OpenMargin, c"the margin of open places must be at most 127"),
+    (Status::MinConfidence, c"the least confidence must be at most 207"),
 ];
 
 /// Largest status.
-const LARGEST: i32 = Status::Dropped as i32;
+const LARGEST: i32 = Status::Lost as i32;
 /// Bytes of all texts with a zero behind each.
 const BYTES: usize = {
     let (mut bytes, mut i) = (0, 0);

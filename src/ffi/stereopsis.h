@@ -80,7 +80,7 @@
  * largest rectified image, and the raw lines of each camera that it holds.
  */
 #define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \
-  ((size_t)80 + (size_t)2 * (width) * ((size_t)(lines) + 1) + \
+  ((size_t)80 + (size_t)(lines) + (size_t)2 * (width) * ((size_t)(lines) + 1) + \
    (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \
                  ((size_t)(height) + 1) / 2))
 
@@ -122,7 +122,7 @@
 /**
  * Version of this interface, which changes when a program compiled with another header would go wrong.
  */
-#define STEREOPSIS_ABI 6
+#define STEREOPSIS_ABI 7
 
 /**
  * Alignment that is enough for every matcher's memory, that of `uint64_t`.
@@ -528,6 +528,10 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_DROPPED = 5,
   /**
+   * Rectification: the row needs a raw line that was lost; `stereopsis_push_lost` tells the matcher.
+   */
+  STEREOPSIS_STATUS_LOST = 6,
+  /**
    * A pointer is null.
    */
   STEREOPSIS_STATUS_NULL = -1,
@@ -863,7 +867,15 @@ enum stereopsis_status
   /**
    * Obstacles: the ground is none of the `STEREOPSIS_GROUND_` numbers.
    */
-  STEREOPSIS_STATUS_OBSTACLE_GROUND = -84
+  STEREOPSIS_STATUS_OBSTACLE_GROUND = -84,
+  /**
+   * Configuration: the margin of open places is over 127.
+   */
+  STEREOPSIS_STATUS_OPEN_MARGIN = -85,
+  /**
+   * Configuration: the least confidence is over 207.
+   */
+  STEREOPSIS_STATUS_MIN_CONFIDENCE = -86
 };
 #if defined(__cplusplus) ? __cplusplus < 201103L : __STDC_VERSION__ < 202311L
 typedef int32_t stereopsis_status;
@@ -2172,11 +2184,18 @@ stereopsis_status stereopsis_rectifier_push(struct stereopsis_rectifier *handle,
                                             size_t length);
 
 /**
+ * Takes the raw lines above again in place of lost ones, zeros for a frame's first ones, and returns
+ * what `stereopsis_rectifier_push` does.
+ */
+stereopsis_status stereopsis_rectifier_push_lost(struct stereopsis_rectifier *handle);
+
+/**
  * Writes the next rectified line of both cameras, in the order of their rows, `length` bytes each,
  * which is the rectified width, for `stereopsis_push`. A pixel that a camera does not see is 0.
  *
  * Returns `STEREOPSIS_STATUS_OK` with lines, `STEREOPSIS_STATUS_NO_ROW_YET` where raw lines are
- * needed, and `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
+ * needed, `STEREOPSIS_STATUS_LOST` for a row that needs a lost one, for `stereopsis_push_lost`, and
+ * `STEREOPSIS_STATUS_FRAME_DONE` after the last row.
  */
 stereopsis_status stereopsis_rectifier_line(struct stereopsis_rectifier *handle,
                                             uint8_t *left,
@@ -2703,8 +2722,8 @@ stereopsis_status stereopsis_drive_stopping_mm(struct stereopsis_drive *handle,
                                                uint16_t *stopping_mm);
 
 /**
- * Decides on the last finished frame of a finder, at a speed. In this order: blind where the frame
- * is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
+ * Decides on the frame of a finder that was finished last, at a speed. In this order: blind where
+ * another one has begun since, or the frame is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
  * found, or too little of it is seen; slow down for what is within twice the stopping distance or
  * the time to contact; clear. No hardware is called.
  */
@@ -2714,8 +2733,8 @@ stereopsis_status stereopsis_drive_decide(struct stereopsis_drive *handle,
                                           struct stereopsis_verdict *verdict);
 
 /**
- * Returns the speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, 0 for a
- * period of 0.
+ * Returns the speed of a vehicle of which odometry gave the last step, mm/s; 65535 at most, and for
+ * a period of 0.
  */
 uint16_t stereopsis_speed_mm_s(uint16_t step_mm, uint32_t period_us);
 
@@ -2980,6 +2999,7 @@ stereopsis_status stereopsis_sigma_px(struct stereopsis *handle, float *sigma_px
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_start(struct stereopsis_rectifier *handle, const uint8_t *record, size_t length, uint16_t width, uint16_t height, float alpha, struct stereopsis_rig *rig, size_t *lines); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_begin_frame(struct stereopsis_rectifier *handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_push(struct stereopsis_rectifier *handle, const uint8_t *left, const uint8_t *right, size_t length); \
+  STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_push_lost(struct stereopsis_rectifier *handle); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_line(struct stereopsis_rectifier *handle, uint8_t *left, uint8_t *right, size_t length); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_rectifier_mask(struct stereopsis_rectifier *handle, uint16_t row, uint8_t *left, uint8_t *right, size_t length); \
   STEREOPSIS_EXTERN stereopsis_status prefix##stereopsis_noise_clear(struct stereopsis_noise_meter *meter); \

@@ -27,8 +27,8 @@ pub struct Config {
     pub confidence: bool,
     /// The least confidence that an answer keeps: one that is less sure is refused, as
     /// [`AMBIGUOUS`](crate::units::PixelFlags::AMBIGUOUS), and so is every answer that was filled in, from 2
-    /// on. The rows below are as they would be with it. 0: none is refused; more
-    /// asks for `confidence`, too.
+    /// on. The rows below are as they would be with it. 0: none is refused; more, up to
+    /// [`Config::MOST_CONFIDENCE`], asks for `confidence`, too.
     pub min_confidence: u8,
     /// How noisy both cameras are: what is compared is smoothed accordingly. The next frame's is what a
     /// [`NoiseMeter`](crate::imaging::NoiseMeter) says of this one. It takes work, but no memory. Checks and
@@ -42,6 +42,9 @@ impl Config {
     pub const FEWEST_DISPARITIES: u16 = 16;
     /// The longest search range of any matcher.
     pub const MOST_DISPARITIES: u16 = 256;
+
+    /// The highest confidence that an answer can have.
+    pub const MOST_CONFIDENCE: u8 = 207;
 
     /// Where every search ends, px: its largest disparity lies below, so that no answer is near
     /// [`Disparity::NONE`].
@@ -93,6 +96,12 @@ impl Config {
         }
         if self.checks.surface_step.raw() > Disparity::ONE {
             return Err(ConfigError::SurfaceStep);
+        }
+        if self.checks.open_margin > Checks::MOST_OPEN_MARGIN {
+            return Err(ConfigError::OpenMargin);
+        }
+        if self.min_confidence > Self::MOST_CONFIDENCE {
+            return Err(ConfigError::MinConfidence);
         }
         self.penalties.check().map_err(|error| match error {
             PenaltiesError::Gradient => ConfigError::Gradient,
@@ -156,7 +165,7 @@ pub struct Checks {
     /// row of a surface counts as at most this many answers for its speckle. 0: as anywhere.
     pub open_run: u8,
     /// Open: there an answer stays when every other disparity, but for those up to two px beside it, costs
-    /// more by at least this, up to 127. 0: not checked, and the kernel saves the pass.
+    /// more by at least this, up to [`Checks::MOST_OPEN_MARGIN`]. 0: not checked, and the kernel saves the pass.
     pub open_margin: u8,
     /// Repeats, with the methods along paths: whether answers are refused on patterns that repeat along the
     /// row within the search, such as a chessboard's.
@@ -176,6 +185,9 @@ impl Checks {
 
     /// The widest smoothing along the line.
     pub const MOST_SMOOTHING: u8 = 8;
+
+    /// The largest margin of answers in open places: what costs are compared up to.
+    pub const MOST_OPEN_MARGIN: u8 = 127;
 
     /// Every pixel with a candidate gets an answer.
     pub const DENSE: Self = Self {
@@ -255,6 +267,10 @@ pub enum ConfigError {
     Smoothing,
     /// The step of a surface is over 1 px.
     SurfaceStep,
+    /// The margin of open places is over [`Checks::MOST_OPEN_MARGIN`].
+    OpenMargin,
+    /// The least confidence is over [`Config::MOST_CONFIDENCE`].
+    MinConfidence,
     /// The range of gradients is 0 or over [`Penalties::MOST_GRADIENT`].
     Gradient,
     /// The penalties are not in order, or a sum of them is over its byte.
@@ -268,6 +284,8 @@ error_text!(ConfigError {
     Self::MinDisparity { most } => "min_disparity: at most {most} with these disparities",
     Self::Uniqueness => "uniqueness: 0 to 99 percent",
     Self::SurfaceStep => "surface step: at most 1 px",
+    Self::OpenMargin => "open margin: at most {}" (Checks::MOST_OPEN_MARGIN),
+    Self::MinConfidence => "min_confidence: at most {}" (Config::MOST_CONFIDENCE),
     Self::Gradient => "gradient: 1 to {}" (Penalties::MOST_GRADIENT),
     Self::Penalties =>
         "penalties: cost >= 1, steps falling, jumps above them, edges rising, \
@@ -296,6 +314,8 @@ mod tests {
             with(Checks { uniqueness_percent: Some(99), ..plain.checks }),
             with(Checks { smoothing_radius: Checks::MOST_SMOOTHING, ..plain.checks }),
             with(Checks { surface_step: Disparity::ONE_PIXEL, ..plain.checks }),
+            with(Checks { open_margin: Checks::MOST_OPEN_MARGIN, ..plain.checks }),
+            Config { min_confidence: Config::MOST_CONFIDENCE, ..plain },
         ] {
             assert_eq!(config.check(width, disparities), Ok(()), "{config:?}");
         }
@@ -327,6 +347,8 @@ mod tests {
             (with(Checks { smoothing_radius: 255, ..plain.checks }), ConfigError::Smoothing),
             (with(Checks { surface_step: beyond, ..plain.checks }), ConfigError::SurfaceStep),
             (with(Checks { surface_step: Disparity::NONE, ..plain.checks }), ConfigError::SurfaceStep),
+            (with(Checks { open_margin: 128, ..plain.checks }), ConfigError::OpenMargin),
+            (Config { min_confidence: 208, ..plain }, ConfigError::MinConfidence),
             (
                 Config { penalties: Penalties { gradient: 0, ..Penalties::DEFAULT }, ..plain },
                 ConfigError::Gradient,

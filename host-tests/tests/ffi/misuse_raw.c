@@ -121,10 +121,12 @@ static void frames(guarded g, stereopsis_rectifier *h) {
     uint8_t left[WIDTH], right[WIDTH], out[2][WIDTH];
     memset(left, 10, WIDTH), memset(right, 200, WIDTH);
     EXPECT(stereopsis_rectifier_push(h, left, right, WIDTH), NOT_BEGUN);
+    EXPECT(stereopsis_rectifier_push_lost(h), NOT_BEGUN);
     EXPECT(stereopsis_rectifier_line(h, out[0], out[1], WIDTH), NOT_BEGUN);
     for (int frame = 0; frame < 2; frame++) {
         EXPECT(stereopsis_rectifier_begin_frame(h), OK);
         EXPECT(stereopsis_rectifier_push(NULL, left, right, WIDTH), NULL);
+        EXPECT(stereopsis_rectifier_push_lost(NULL), NULL);
         EXPECT(stereopsis_rectifier_push(h, NULL, right, WIDTH), NULL);
         EXPECT(stereopsis_rectifier_push(h, left, NULL, WIDTH), NULL);
         EXPECT(stereopsis_rectifier_push(h, left, right, WIDTH - 1), LINE_LENGTH);
@@ -145,6 +147,7 @@ static void frames(guarded g, stereopsis_rectifier *h) {
             CHECK(pushed >= 0);
             if (pushed == STEREOPSIS_STATUS_OK) {
                 EXPECT(stereopsis_rectifier_push(h, left, right, WIDTH), LINE_WAITING);
+                EXPECT(stereopsis_rectifier_push_lost(h), LINE_WAITING);
                 waited++;
             }
             while ((status = stereopsis_rectifier_line(h, out[0], out[1], WIDTH)) == STEREOPSIS_STATUS_OK) {
@@ -156,8 +159,24 @@ static void frames(guarded g, stereopsis_rectifier *h) {
         }
         CHECK(rows == HEIGHT && waited > HEIGHT / 2);
         EXPECT(stereopsis_rectifier_push(h, left, right, WIDTH), FRAME_DONE);
+        EXPECT(stereopsis_rectifier_push_lost(h), FRAME_DONE);
         EXPECT(stereopsis_rectifier_line(h, out[0], out[1], WIDTH), FRAME_DONE);
     }
+    /* A lost raw line loses the rows that need it, and leaves the others in their places. */
+    EXPECT(stereopsis_rectifier_begin_frame(h), OK);
+    int given = 0, lost = 0;
+    for (int y = 0; y < HEIGHT; y++) {
+        int32_t pushed =
+            y == HEIGHT / 2 ? stereopsis_rectifier_push_lost(h) : stereopsis_rectifier_push(h, left, right, WIDTH);
+        int32_t status;
+        CHECK(pushed >= 0);
+        while ((status = stereopsis_rectifier_line(h, out[0], out[1], WIDTH)) == STEREOPSIS_STATUS_OK ||
+               status == STEREOPSIS_STATUS_LOST) {
+            given += status == STEREOPSIS_STATUS_OK;
+            lost += status == STEREOPSIS_STATUS_LOST;
+        }
+    }
+    CHECK(given + lost == HEIGHT && lost >= 1 && lost <= HEIGHT / 2);
     EXPECT(stereopsis_rectifier_mask(NULL, 0, out[0], out[1], WIDTH), NULL);
     EXPECT(stereopsis_rectifier_mask(h, 0, NULL, out[1], WIDTH), NULL);
     EXPECT(stereopsis_rectifier_mask(h, 0, out[0], NULL, WIDTH), NULL);
@@ -189,6 +208,7 @@ static void rectifiers(void) {
     {
         uint8_t line[2][WIDTH] = {{0}, {0}};
         EXPECT(stereopsis_rectifier_push(h, line[0], line[1], WIDTH), NOT_STARTED);
+        EXPECT(stereopsis_rectifier_push_lost(h), NOT_STARTED);
         EXPECT(stereopsis_rectifier_line(h, line[0], line[1], WIDTH), NOT_STARTED);
         EXPECT(stereopsis_rectifier_mask(h, 0, line[0], line[1], WIDTH), NOT_STARTED);
     }

@@ -11,5 +11,6 @@ mod gradient;
 mod noise;
 mod picture;
 mod remap;
+mod remap_faults;
 mod remap_pair;
 mod remap_turned;

@@ -107,6 +107,16 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
         self.lines.get_mut(slot).and_then(|line| line.get_mut(..width)).unwrap_or_default()
     }
 
+    /// Writes the raw line above into [`Self::next_line`], zeros for a frame's first line: what stands for a
+    /// lost one.
+    pub fn repeat(&mut self) {
+        let [above, slot] = [self.came.saturating_sub(1), self.came].map(|row| usize::from(row % Self::ROWS));
+        match self.lines.get_disjoint_mut([above, slot]) {
+            Ok([above, line]) => *line = *above,
+            Err(_) => self.next_line().fill(0),
+        }
+    }
+
     /// Accepts the raw line in [`Self::next_line`].
     pub fn accept(&mut self) {
         if self.came.is_multiple_of(Self::ROWS)
@@ -132,6 +142,18 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
     pub fn wants_line(&self) -> bool {
         let last = self.needs.map_or(0, |(_, last)| last + 1);
         self.next < self.table.size().height && self.came < last
+    }
+
+    /// Returns the first and the last raw row that the next rectified row needs; `None` where it sees none.
+    pub fn needs(&self) -> Option<(u16, u16)> {
+        self.needs
+    }
+
+    /// Passes over the next rectified row.
+    pub fn skip(&mut self) {
+        let height = self.table.size().height;
+        self.next = height.min(self.next.saturating_add(1));
+        self.needs = if self.next < height { self.table.raw_rows(self.next) } else { None };
     }
 
     /// Writes the next rectified line and its mask (1 for a valid pixel, else 0), and returns its row.
@@ -174,8 +196,7 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Remap<W, N, SLOTS> {
                 }
             }
         }
-        self.next += 1;
-        self.needs = if self.next < self.table.size().height { self.table.raw_rows(self.next) } else { None };
+        self.skip();
         Ok(row)
     }
 }

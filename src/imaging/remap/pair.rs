@@ -1,7 +1,9 @@
 //! Rectified stereo source over two raw cameras.
 
 use super::{Remap, RemapError};
-use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, PixelFormat, StereoSource};
+use crate::camera::{
+    CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineStart, PixelFormat, StereoSource,
+};
 use crate::geometry::{Real, rectify::Rectification};
 use core::fmt;
 
@@ -19,17 +21,19 @@ pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
     left: Remap<W, N, SLOTS>,
     right: Remap<W, N, SLOTS>,
     valid: [[u8; W]; 2],
+    /// Whether other lines stand for the raw ones that are held, by their row's remainder.
+    replaced: [bool; N],
 }
 
 impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> {
     /// Creates remaps to images without pixels; [`Self::set`] gives them their warps.
     pub const fn empty() -> Self {
-        Self { left: Remap::empty(), right: Remap::empty(), valid: [[0; W]; 2] }
+        Self::new(Remap::empty(), Remap::empty())
     }
 
     /// Joins the remaps of the left and the right camera.
-    pub fn new(left: Remap<W, N, SLOTS>, right: Remap<W, N, SLOTS>) -> Self {
-        Self { left, right, valid: [[0; W]; 2] }
+    pub const fn new(left: Remap<W, N, SLOTS>, right: Remap<W, N, SLOTS>) -> Self {
+        Self { left, right, valid: [[0; W]; 2], replaced: [false; N] }
     }
 
     /// Sets the warps of a rectification in place.
@@ -90,10 +94,47 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
         [self.left.next_line(), self.right.next_line()]
     }
 
+    /// Writes the raw lines above into [`Self::next_lines`], in place of lost ones.
+    pub fn repeat_lines(&mut self) {
+        self.left.repeat();
+        self.right.repeat();
+    }
+
     /// Accepts the raw lines in [`Self::next_lines`].
     pub fn accept(&mut self) {
+        self.take(false);
+    }
+
+    /// Accepts the raw lines in [`Self::next_lines`], which stand for lost ones.
+    pub fn accept_replaced(&mut self) {
+        self.take(true);
+    }
+
+    fn take(&mut self, is_replaced: bool) {
+        let slot = usize::from(self.came()) % N;
+        if let Some(replaced) = self.replaced.get_mut(slot) {
+            *replaced = is_replaced;
+        }
         self.left.accept();
         self.right.accept();
+    }
+
+    /// Returns the number of raw lines accepted of each camera since [`Self::begin`].
+    pub fn came(&self) -> u16 {
+        self.left.came()
+    }
+
+    /// Returns whether the next rectified lines need a raw line that was lost.
+    pub fn is_damaged(&self) -> bool {
+        let was_replaced = |row| self.replaced.get(usize::from(row) % N).is_some_and(|replaced| *replaced);
+        let needs = [self.left.needs(), self.right.needs()];
+        needs.into_iter().flatten().any(|(first, last)| (first..=last).any(was_replaced))
+    }
+
+    /// Passes over the next rectified lines.
+    pub fn skip(&mut self) {
+        self.left.skip();
+        self.right.skip();
     }
 
     /// Writes the next rectified lines, and returns their row.
@@ -144,12 +185,19 @@ impl core::error::Error for RemapPairError {}
 
 /// Stereo source of rectified lines over a source of raw lines.
 ///
-/// Raw lines are read in pairs until both cameras have what their next rectified line needs.
+/// Raw lines are read in pairs until both cameras have what their next rectified line needs. A raw line that
+/// is lost, skipped, or older than the one before is replaced by a neighbour, so that the others keep their
+/// places, and the rectified rows that need it are [`CameraError::LineLost`]; one that comes again is ignored.
 #[derive(Debug)]
 pub struct RectifiedPair<'a, S, const W: usize, const N: usize, const SLOTS: usize> {
     source: S,
     pair: &'a mut RemapPair<W, N, SLOTS>,
+    /// The newest raw line.
     last: LineStart,
+    /// What happened to the last raw line that was lost.
+    fault: LineFault,
+    /// Row of the newest raw line while it stands for skipped ones above it.
+    held: Option<u16>,
 }
 
 /// Why there is no pair of rectified lines.
@@ -215,7 +263,7 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
             RemapPairError::Lines { needed } => RectifiedPairError::Remap(RemapError::Lines { needed }),
         })?;
         let last = LineStart { row: 0, timestamp_us: 0 };
-        Ok(Self { source, pair, last })
+        Ok(Self { source, pair, last, fault: LineFault::Dropped, held: None })
     }
 
     /// Returns the masks of the last lines, left and right: 1 for a valid pixel, else 0.
@@ -231,6 +279,59 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
     /// Releases the source.
     pub fn release(self) -> S {
         self.source
+    }
+
+    /// Takes the next raw lines of each camera, their own or others in their place; or none, where they came
+    /// before.
+    fn read(&mut self) -> Result<(), CameraError<RectifiedPairError<S::Error>>> {
+        let due = self.pair.came();
+        if let Some(row) = self.held {
+            self.pair.repeat_lines();
+            self.take(row, due);
+            return Ok(());
+        }
+        let [left, right] = self.pair.next_lines();
+        let line = match self.source.next_lines(left, right) {
+            Ok(line) => line,
+            Err(CameraError::LineLost(fault)) => {
+                self.replace(fault);
+                return Ok(());
+            }
+            Err(error) => return Err(error.map_hardware(RectifiedPairError::Source)),
+        };
+        if line.row < self.last.row || line.row >= self.source.format().height {
+            return Err(CameraError::LostSync);
+        }
+        self.last.row = line.row;
+        // It came before, or others stand in its place.
+        if line.row < due {
+            return Ok(());
+        }
+        if line.timestamp_us != 0 && line.timestamp_us < self.last.timestamp_us {
+            self.replace(LineFault::Stale);
+            return Ok(());
+        }
+        self.last = line;
+        self.take(line.row, due);
+        Ok(())
+    }
+
+    /// Accepts the lines of `row`, which stand for `due` as well where it was skipped.
+    fn take(&mut self, row: u16, due: u16) {
+        if row == due {
+            self.held = None;
+            self.pair.accept();
+        } else {
+            (self.held, self.fault) = (Some(row), LineFault::Dropped);
+            self.pair.accept_replaced();
+        }
+    }
+
+    /// Accepts the lines above in place of lost ones.
+    fn replace(&mut self, fault: LineFault) {
+        self.fault = fault;
+        self.pair.repeat_lines();
+        self.pair.accept_replaced();
     }
 }
 
@@ -255,6 +356,7 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<Self::Error>> {
         let start = self.source.start_frame().map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
         self.pair.begin();
+        (self.last, self.held) = (LineStart { row: 0, timestamp_us: start.timestamp_us }, None);
         Ok(start)
     }
 
@@ -263,12 +365,18 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         left: &mut [u8],
         right: &mut [u8],
     ) -> Result<LineStart, CameraError<Self::Error>> {
-        // Each iteration reads a raw line; an image has at most 4096.
-        while self.pair.wants_lines() {
-            let [first, second] = self.pair.next_lines();
-            let lines = self.source.next_lines(first, second);
-            self.last = lines.map_err(|e| e.map_hardware(RectifiedPairError::Source))?;
-            self.pair.accept();
+        // A source may give lines again and again: a frame's worth of that is enough.
+        for _ in 0..2 * u32::from(self.source.format().height) {
+            if self.pair.wants_lines() {
+                self.read()?;
+            }
+        }
+        if self.pair.wants_lines() {
+            return Err(CameraError::LostSync);
+        }
+        if self.pair.is_damaged() {
+            self.pair.skip();
+            return Err(CameraError::LineLost(self.fault));
         }
         let row = self.pair.row(left, right)?;
         Ok(LineStart { row, ..self.last })

@@ -184,7 +184,8 @@ pub fn rectifier(u: &mut Unstructured<'_>, a: &mut Arena) -> Result<Status> {
             5 => stereopsis_rectifier_deinit(h),
             6 => stereopsis_record_read(record(u, a, length)?, length, a.array(u, 1)?),
             7 => stereopsis_rectifier_mask(h, u.arbitrary()?, a.array(u, n)?, a.array(u, n)?, n),
-            8..=10 => stereopsis_rectifier_line(h, a.array(u, n)?, a.array(u, n)?, n),
+            8 => stereopsis_rectifier_push_lost(h),
+            9..=11 => stereopsis_rectifier_line(h, a.array(u, n)?, a.array(u, n)?, n),
             _ => stereopsis_rectifier_push(h, a.array(u, n)?, a.array(u, n)?, n),
         }
     })

@@ -65,7 +65,7 @@ const RECTIFIER_BYTES: &str = "/**
  * largest rectified image, and the raw lines of each camera that it holds.
  */
 #define STEREOPSIS_RECTIFIER_BYTES(width, height, lines) \\
-  ((size_t)80 + (size_t)2 * (width) * ((size_t)(lines) + 1) + \\
+  ((size_t)80 + (size_t)(lines) + (size_t)2 * (width) * ((size_t)(lines) + 1) + \\
    (size_t)16 * ((((size_t)(width) + 15) / 16 + 3) * (((size_t)(height) + 15) / 16 + 3) + \\
                  ((size_t)(height) + 1) / 2))
 ";
@@ -93,7 +93,7 @@ fn line_queue_macro() -> Outcome<String> {
 fn rectifier_macro() -> Outcome<String> {
     let expected = |width: usize, height: usize, lines: usize| {
         let lattice = (width.div_ceil(16) + 3) * (height.div_ceil(16) + 3);
-        80 + 16 * (lattice + height.div_ceil(2)) + 2 * width * (lines + 1)
+        80 + 16 * (lattice + height.div_ceil(2)) + 2 * width * (lines + 1) + lines
     };
     for (width, height, lines) in [(16, 2, 3), (160, 120, 33), (333, 241, 40), (4096, 4096, 4097)] {
         if expected(width, height, lines) != rectifier_bytes(width, height, lines) {

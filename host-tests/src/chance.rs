@@ -9,7 +9,7 @@ const SAMPLE: usize = 7;
 const MODELS: f64 = 3.0;
 
 /// The logarithm (to the base 10) of how many fundamental matrices with as many inliers are expected among
-/// matches that have nothing to do with each other: over 0, they agree by chance.
+/// matches that have nothing to do with each other: 0 and more, they agree by chance.
 ///
 /// `NFA = 3 (n - 7) C(n, k) C(k, 7) a^(k - 7)` for `k` of `n` matches, where `a` is the probability that a
 /// place falls within `threshold_px` of a line: the area of that strip in the part of the image that the

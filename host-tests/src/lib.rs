@@ -21,7 +21,8 @@
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`correspond_refine`]: to a small
 //!   part of a pixel. [`two_view`]: correspondences of a
-//!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance.
+//!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance. [`turned`]: whether
+//!   they show a camera that has only turned.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`obstacles`]: ground, stixels and sectors of a whole map, as a record and a picture.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
@@ -68,6 +69,7 @@ pub mod report;
 pub mod rows;
 pub mod run;
 pub mod sparsification;
+pub mod turned;
 pub mod two_view;
 pub mod views;
 pub mod winners;

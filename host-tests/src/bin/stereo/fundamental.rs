@@ -26,7 +26,8 @@ pub const EXAMPLE: &str = "Example:
 
 Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 \
                            of the second), inliers (whether each match is within the threshold), time_us \
-                           (the estimate alone, the best of five); with ransac also samples and \
+                           (the estimate alone, the best of five), log10_false_alarms (the logarithm of how many such \
+                           matrices unrelated matches would have); with ransac also samples and \
                            miss_probability, the probability that a better estimate was missed. The picture \
                            has both images with the points of all matches, red where one does not agree, \
                            and for some of the others the lines on which they must lie.";
@@ -65,8 +66,7 @@ struct Answer {
     samples: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     miss_probability: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    log10_false_alarms: Option<f64>,
+    log10_false_alarms: f64,
 }
 
 /// A fundamental matrix, and what agrees with it.
@@ -96,10 +96,7 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
         black_box(again);
     }
     let kept = estimate.inliers.iter().filter(|&&inlier| inlier).count();
-    let log10_false_alarms = match args.robust.method {
-        TwoViewMethod::EightPoint => None,
-        TwoViewMethod::Ransac => Some(by_chance(&seen, kept, &args.robust).map_err(failed)?),
-    };
+    let log10_false_alarms = by_chance(&seen, kept, &args.robust).map_err(failed)?;
     let drawn = |(place, (left, right)): (_, &(RgbImage, RgbImage))| {
         let matches: Vec<_> = seen.iter().copied().zip(estimate.inliers.iter().copied()).collect();
         (place, epipolar_picture(left, right, &estimate.fundamental, &matches))
@@ -118,13 +115,19 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
     print(&format!("{kept} of {n} matches within {} px, {best:.0} us\n", args.robust.threshold))
 }
 
-/// The logarithm of how often so many matches agree by chance, or that these do.
+/// The logarithm of how often so many matches agree by chance, or that these do. All of those of which the user
+/// says that they are right may be as few as they like.
 pub fn by_chance(seen: &[Correspondence<f64>], kept: usize, args: &RobustArgs) -> Result<f64, String> {
     let log10 = log10_false_alarms(seen, kept, args.threshold);
-    if log10 > 0.0 {
+    let all_are_right = args.method == TwoViewMethod::EightPoint && kept == seen.len();
+    if log10 >= 0.0 && !all_are_right {
+        let cure = match args.method {
+            TwoViewMethod::EightPoint => "where some are wrong, use --method ransac",
+            TwoViewMethod::Ransac => "are these images of one scene?",
+        };
         return Err(format!(
             "{kept} of {} matches agree within {} px, as many as of unrelated ones by chance (1e{log10:.0} \
-             such matrices are expected); are these images of one scene?",
+             such matrices are expected); {cure}",
             seen.len(),
             args.threshold
         ));

@@ -17,6 +17,7 @@ use stereopsis::geometry::{
 };
 use stereopsis_host::calibration::Cameras;
 use stereopsis_host::matches::read_matches;
+use stereopsis_host::turned::only_turned;
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -56,6 +57,9 @@ struct Answer {
     model: &'static str,
 }
 
+/// A threshold that no match of two images is beyond, px.
+const ANY_DISTANCE: f64 = 1e6;
+
 /// A start for the refinement, and which model it comes from.
 type Start = (Essential<f64>, &'static str);
 
@@ -78,7 +82,7 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
 
 /// A pose with what it leaves.
 struct Found {
-    /// The gain of a soft loss: how much agrees how well.
+    /// The gain of a soft loss, how much agrees how well, times the share of it that is before both cameras.
     gain: f64,
     in_front: usize,
     rms: f64,
@@ -114,7 +118,7 @@ fn solve(
     for (essential, model) in starts {
         let refined = match args.method {
             // Every match counts alike, however far off it is.
-            TwoViewMethod::EightPoint => Ok(essential),
+            TwoViewMethod::EightPoint => essential.refined(&seen, &first, &second, ANY_DISTANCE),
             TwoViewMethod::Ransac => essential.refined(&seen, &first, &second, args.threshold),
         };
         let refined = refined.map_err(|e| e.to_string())?;
@@ -124,11 +128,15 @@ fn solve(
         let squares: f64 = kept().map(|s| f.sampson_squared_px2(&s)).sum();
         // As the estimates have it: one and a half thresholds wide.
         let share = |s: &Correspondence<f64>| f.sampson_squared_px2(s) / (1.5 * args.threshold).powi(2);
-        let gain = seen.iter().map(|s| (1.0 - share(s)).max(0.0).powi(3)).sum();
+        let gain: f64 = seen.iter().map(|s| (1.0 - share(s)).max(0.0).powi(3)).sum();
         let rms = (squares / kept().count().max(1) as f64).sqrt();
-        match refined.recover_pose(kept(), &first, &second) {
+        // Every match counts alike, here too.
+        let counted = |inlier| inlier || args.method == TwoViewMethod::EightPoint;
+        let voters = || seen.iter().zip(&inliers).filter(|&(_, &inlier)| counted(inlier)).map(|(s, _)| *s);
+        match refined.recover_pose(voters(), &first, &second) {
             Ok(found) => {
                 let (in_front, pose) = (found.in_front, found.pose);
+                let gain = gain * in_front as f64 / voters().count() as f64;
                 let found = Found { gain, in_front, rms, essential: refined, pose, inliers, model };
                 if best.as_ref().is_none_or(|best| found.is_better(best)) {
                     best = Some(found);
@@ -138,6 +146,12 @@ fn solve(
         }
     }
     let Found { rms, essential, pose, inliers, model, .. } = best.ok_or(why)?;
+    let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
+    by_chance(&seen, kept.len(), args)?;
+    // Exact matches have the noise of their digits.
+    if let Some(degrees) = only_turned(&kept, &essential, [&first, &second], rms.max(0.01)) {
+        return Err(format!("the camera has only turned, by {degrees:.2} degrees: there is no translation"));
+    }
     let in_baselines = pose.in_baselines();
     let views = TwoViews::new(first, second, in_baselines).map_err(|e| e.to_string())?;
     let point = |(s, &inlier): (&Correspondence<f64>, &bool)| {
@@ -177,8 +191,9 @@ fn start(
         }
     };
     let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
-    if args.method == TwoViewMethod::Ransac && found.is_some() {
-        by_chance(seen, kept.len(), args)?;
+    if let Some(f) = found {
+        let within = seen.iter().filter(|s| f.sampson_px(s).abs() <= args.threshold).count();
+        by_chance(seen, within, args)?;
     }
     let homography = match found {
         None => Some(Homography::from_correspondences(&kept).map_err(|e| e.to_string())?),

@@ -1,10 +1,11 @@
 //! `stereo walk`: the frames of a built-in street that a pair of cameras is driven through, with true poses.
 
 use crate::failure::Failure;
-use crate::place::png;
+use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::shared::{print, whole};
 use clap::{Args, ValueEnum};
+use serde::Serialize;
 use std::path::PathBuf;
 use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis_host::command_line::one_line;
@@ -19,7 +20,22 @@ pub const EXAMPLE: &str = "Example:
   stereo odometry --sequence street --calib street/calib.txt --truth street/poses.txt --out found.txt
 
 Written into the folder: left/000000.png and so on, right/000000.png, calib.txt and poses.txt in KITTI's \
-                           formats.";
+                           formats, and walk.json, what was asked for: a folder with frames and without it is \
+                           left alone.";
+
+/// What tells a sequence that this command wrote from others.
+const MARK: &str = "walk.json";
+
+/// What was asked for. Names are a contract with programs that read them.
+#[derive(Serialize)]
+struct Asked {
+    scene: String,
+    frames: u16,
+    width: u16,
+    noise: u16,
+    shutter: u16,
+    exposure: u16,
+}
 
 /// What is driven through.
 #[derive(Clone, Copy, PartialEq, Eq, Debug, ValueEnum)]
@@ -118,6 +134,10 @@ pub fn run(args: &WalkArgs) -> Result<(), Failure> {
     let [mut left, mut right] = [Staging::new(&folders[0])?, Staging::new(&folders[1])?];
     // Frames of an earlier run that was longer.
     let stale = folders.map(|folder| numbered(&folder));
+    if stale.iter().any(|names| !names.is_empty()) && !args.out.join(MARK).is_file() {
+        let out = args.out.display();
+        return Err(Failure::new(format!("{out}: has frames that walk did not write; name another folder")));
+    }
     let progress = Progress::over_frames(street.len());
     for i in 0..street.len() {
         let (seen_left, seen_right) = street.frame(i);
@@ -127,6 +147,15 @@ pub fn run(args: &WalkArgs) -> Result<(), Failure> {
         progress.one_more();
     }
     drop(progress);
+    let asked = Asked {
+        scene: args.scene.to_possible_value().map_or_else(String::new, |scene| scene.get_name().to_owned()),
+        frames: args.frames,
+        width,
+        noise: args.noise,
+        shutter: args.shutter,
+        exposure: args.exposure,
+    };
+    top.write(MARK, |out| json(out, &asked))?;
     top.write("calib.txt", |out| out.write_all(calibration(&street.rig()).as_bytes()))?;
     top.write("poses.txt", |out| poses::write(out, &street.truth()))?;
     for (staging, stale) in [left, right].into_iter().zip(&stale) {

@@ -101,7 +101,7 @@ impl Bench {
 
     pub fn is_refusal(&self, run: &Output, culprit: &str, what: &str) {
         let said = text(&run.stderr);
-        // What clap finds wrong is named in its words; all else is the program's.
+        // What is wrong with the command line is named in these words; all else is wrong with what it names.
         let is_usage = [
             "for '--",
             "for '<",
@@ -109,6 +109,19 @@ impl Bench {
             "the commands are",
             "requires a subcommand",
             "cannot be used with",
+            "is missing; give",
+            "is missing; the search",
+            "are missing; give",
+            "which is missing",
+            "more than twice",
+            "give both or neither",
+            "give --rectify too",
+            "give --calib too",
+            "distances need a calibration",
+            "give one, or one setting",
+            "name another\n",
+            "of the side of a square",
+            "is not nearer than",
         ];
         let status = if is_usage.iter().any(|words| said.contains(words)) { 2 } else { 1 };
         assert_eq!(run.status.code(), Some(status), "{what}: {said}");

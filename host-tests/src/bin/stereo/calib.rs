@@ -114,7 +114,7 @@ pub fn run(args: &CalibArgs) -> Result<(), Failure> {
 
 fn open(args: &FileArgs) -> Result<RawCalibration, Failure> {
     if args.calib.len() > 2 {
-        return Err(Failure::new(
+        return Err(Failure::usage(
             "--calib: is given more than twice; a file of both cameras or one of each is needed",
         ));
     }
@@ -131,7 +131,7 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
     {
         let size = file.size.or(rectified.size());
         if let (None, Some(_)) = (size, asked.range_m) {
-            return Err(Failure::new("--size: is missing; the search for a range of depths takes it"));
+            return Err(Failure::usage("--size: is missing; the search for a range of depths takes it"));
         }
         return print(&describe_rectified(&rectified, size, &asked));
     }

@@ -109,7 +109,7 @@ fn markers(args: &CalibrateArgs) -> Result<Option<Markers>, Failure> {
     let (Some(dictionary), Some(mm)) = (&args.markers, args.marker_mm) else { return Ok(None) };
     let share = mm / args.square_mm;
     if !(0.4..=0.9).contains(&share) {
-        return Err(Failure::new(format!(
+        return Err(Failure::usage(format!(
             "--marker-mm {mm}: a marker's side is .4 to .9 of the side of a square, {} mm here",
             args.square_mm
         )));

@@ -114,7 +114,7 @@ pub fn run(args: &EvalArgs) -> Result<(), Failure> {
         }
         (None, Some((found, truth))) if truth.is_dir() => of_folders(args, found, truth)?,
         (None, Some((found, truth))) => vec![of_files(args, found, truth)?],
-        (None, None) => return Err(Failure::new("--found: is missing; give it and --truth, or --scenes")),
+        (None, None) => return Err(Failure::usage("--found: is missing; give it and --truth, or --scenes")),
     };
     let altered = args.altered.map(Alteration::name);
     let evaluation = Evaluation { own: Scenes::new(scenes), altered, beside };

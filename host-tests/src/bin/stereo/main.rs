@@ -182,13 +182,13 @@ enum Command {
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
-    let (outcome, status) = match parse(std::env::args_os()) {
+    let outcome = match parse(std::env::args_os()) {
         Ok(command) => {
             protect(inputs::of(inputs::after_command(std::env::args_os().skip(1))));
-            (run(command), ExitCode::FAILURE)
+            run(command)
         }
-        Err(Stop::Help(text)) => (print(&text), ExitCode::FAILURE),
-        Err(Stop::Usage(failure)) => (Err(failure), ExitCode::from(USAGE)),
+        Err(Stop::Help(text)) => print(&text),
+        Err(Stop::Usage(failure)) => Err(failure),
         Err(Stop::NoCommand) => {
             let _ = writeln!(io::stderr(), "stereo: {BEGINNING}");
             return ExitCode::from(USAGE);
@@ -197,7 +197,7 @@ fn main() -> ExitCode {
     let Err(failure) = outcome else { return ExitCode::SUCCESS };
     // When standard error is closed, too, there is nobody left to tell.
     let _ = writeln!(io::stderr(), "stereo: {}", one_line(&failure.to_string()));
-    status
+    if failure.is_usage() { ExitCode::from(USAGE) } else { ExitCode::FAILURE }
 }
 
 fn run(command: Command) -> Result<(), Failure> {
@@ -247,6 +247,6 @@ fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
     }
     Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
-        _ => Stop::Usage(Failure::new(usage_line(&error, COMMANDS))),
+        _ => Stop::Usage(Failure::usage(usage_line(&error, COMMANDS))),
     })
 }

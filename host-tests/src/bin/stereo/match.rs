@@ -42,7 +42,9 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
     let sources = args.source.open(&mut notes)?;
     if !args.settings.is_empty() {
         let Sources::One(input) = &sources else {
-            return Err(Failure::new("--settings: is for one pair; give one, or one setting to many pairs"));
+            return Err(Failure::usage(
+                "--settings: is for one pair; give one, or one setting to many pairs",
+            ));
         };
         return settings::run(args, input);
     }

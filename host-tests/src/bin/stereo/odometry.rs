@@ -127,7 +127,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         .is_some_and(|states| states.is(&place) || picture.as_ref().is_some_and(|p| p.is(states)))
     {
         let what = args.states.as_deref().unwrap_or(Path::new("")).display().to_string();
-        return Err(Failure::new(format!("--states: {what} is the file of another option; name another")));
+        return Err(Failure::usage(format!("--states: {what} is the file of another option; name another")));
     }
 
     if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
@@ -163,7 +163,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
 fn times(args: &OdometryArgs, frames: usize) -> Result<Vec<f64>, Failure> {
     match &args.times {
         Some(_) if args.format != PoseFormat::Tum => {
-            Err(Failure::new("--times: only --format tum has times; give both or neither"))
+            Err(Failure::usage("--times: only --format tum has times; give both or neither"))
         }
         Some(path) => Ok(poses::read_times(path, frames)?),
         None => Ok((0..frames).map(|frame| frame as f64).collect()),
@@ -173,9 +173,9 @@ fn times(args: &OdometryArgs, frames: usize) -> Result<Vec<f64>, Failure> {
 fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
     // Images have at most 4096 columns and rows.
     let size = ImageSize { width: sequence.size().0 as u16, height: sequence.size().1 as u16 };
-    let [path, ..] = args.calib.as_slice() else { return Err(Failure::new("--calib: a file is needed")) };
+    let [path, ..] = args.calib.as_slice() else { return Err(Failure::usage("--calib: a file is needed")) };
     if args.calib.len() > 2 {
-        return Err(Failure::new(
+        return Err(Failure::usage(
             "--calib: is given more than twice; a file of both cameras or one of each is needed",
         ));
     }

@@ -44,7 +44,7 @@ impl Place {
         let place = Self::of("--out", out)?;
         let picture = picture.map(|path| Self::of("--picture", path)).transpose()?;
         if picture.as_ref().is_some_and(|picture| picture.is(&place)) {
-            return Err(Failure::new(format!(
+            return Err(Failure::usage(format!(
                 "--picture: {} is the file of --out; name another",
                 out.display()
             )));

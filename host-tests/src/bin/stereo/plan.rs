@@ -128,7 +128,7 @@ pub fn run(args: &PlanArgs) -> Result<(), Failure> {
 pub fn range(nearest: f32, farthest: f32) -> Result<[f64; 2], Failure> {
     let [nearest_m, farthest_m] = [nearest, farthest].map(exact);
     if nearest_m >= farthest_m {
-        return Err(Failure::new(format!(
+        return Err(Failure::usage(format!(
             "--nearest {nearest_m}: is not nearer than --farthest {farthest_m}; give the smaller depth first"
         )));
     }
@@ -142,5 +142,5 @@ fn focal_px(args: &PlanArgs) -> Result<f64, Failure> {
     let lens = focal_mm.zip(args.sensor_width_mm).map(|(f, sensor)| exact(f) / exact(sensor) * width);
     let seen = field_of_view.map(|degrees| typed_rig::focal_px(degrees, args.size.width));
     let found = focal_px.map(exact).or(lens).or(seen);
-    found.ok_or_else(|| Failure::new("--focal-px: is missing; give it, --focal-mm or --field-of-view"))
+    found.ok_or_else(|| Failure::usage("--focal-px: is missing; give it, --focal-mm or --field-of-view"))
 }

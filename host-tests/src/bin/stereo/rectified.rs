@@ -60,7 +60,7 @@ pub fn open(
     size: ImageSize,
 ) -> Result<(RawCalibration, Rectification<f64>), Failure> {
     if calib.len() > 2 {
-        return Err(Failure::new(
+        return Err(Failure::usage(
             "--calib: is given more than twice; a file of both cameras or one of each is needed",
         ));
     }

@@ -18,7 +18,7 @@ pub fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
 /// The scale of depths in images that are rectified already, where there is a calibration.
 pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
     if args.options.alpha.is_some() {
-        return Err(Failure::new("--alpha: is for raw images; give --rectify too"));
+        return Err(Failure::usage("--alpha: is for raw images; give --rectify too"));
     }
     let size = ImageSize { width: pair.width, height: pair.height };
     if let Some(rig) = args.typed.numbers(size) {
@@ -26,15 +26,15 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
     }
     match args.calib.len() {
         0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {
-            return Err(Failure::new("--depth-unit, --max-depth: are of depths; give --calib too"));
+            return Err(Failure::usage("--depth-unit, --max-depth: are of depths; give --calib too"));
         }
         0 if args.options.unit.is_some() => {
-            return Err(Failure::new("--unit: is that of --calib, which is missing"));
+            return Err(Failure::usage("--unit: is that of --calib, which is missing"));
         }
         0 => return Ok(None),
         1 | 2 => {}
         _ => {
-            return Err(Failure::new(
+            return Err(Failure::usage(
                 "--calib: is given more than twice; a file of both cameras or one of each is needed",
             ));
         }

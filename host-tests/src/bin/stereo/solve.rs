@@ -135,7 +135,7 @@ pub fn solve(
 /// Whether obstacles, if they are asked for, can be found.
 pub fn check_obstacles(args: &MatchArgs) -> Result<(), Failure> {
     if args.watch.obstacles && args.calib.is_empty() && !args.typed.is_given() {
-        return Err(Failure::new(
+        return Err(Failure::usage(
             "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
         ));
     }
@@ -145,7 +145,7 @@ pub fn check_obstacles(args: &MatchArgs) -> Result<(), Failure> {
 /// Matches a raw pair: remap, census and matching in one loop over the rows.
 fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     if args.calib.is_empty() {
-        return Err(Failure::new("--rectify: --calib is missing; give the calibration of the two cameras"));
+        return Err(Failure::usage("--rectify: --calib is missing; give the calibration of the two cameras"));
     }
     let size = ImageSize { width: pair.width, height: pair.height };
     let (calibration, rectification) = rectified::open(&args.calib, &args.options, size)?;

@@ -77,7 +77,7 @@ impl SourceArgs {
         let (left, right) = match both {
             (_, _, Some(path)) => return self.side_by_side(path),
             (Some(left), Some(right), None) => (left, right),
-            _ => return Err(Failure::new("--left, --right: are missing; give both, or --side-by-side")),
+            _ => return Err(Failure::usage("--left, --right: are missing; give both, or --side-by-side")),
         };
         let are_folders = left.is_dir() && right.is_dir();
         if !are_folders && !is_pattern(left) && !is_pattern(right) {
@@ -101,7 +101,7 @@ impl SourceArgs {
             return Ok(Sources::Raw(RawFrames { from, size, path, frames: 0 }));
         }
         if is_standard_input {
-            return Err(Failure::new("--side-by-side -: --raw is missing; give the size of its frames"));
+            return Err(Failure::usage("--side-by-side -: --raw is missing; give the size of its frames"));
         }
         if !path.is_dir() && !is_pattern(path) {
             return Ok(Sources::One(Input::SideBySide(path.to_owned())));

@@ -24,13 +24,13 @@ pub fn watch(args: &ReplayArgs, header: Header) -> Result<Option<(Watch, DepthSc
     let scale = match (args.typed.numbers(size), args.calib.len()) {
         (Some(rig), _) => of_numbers(rig, size)?,
         (None, 0) => {
-            return Err(Failure::new(
+            return Err(Failure::usage(
                 "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
             ));
         }
         (None, 1 | 2) => of_files(&args.calib, args.unit, &args.from, size)?,
         _ => {
-            return Err(Failure::new(
+            return Err(Failure::usage(
                 "--calib: is given more than twice; a file of both cameras or one of each is needed",
             ));
         }

@@ -64,8 +64,8 @@ mod tests {
     use stereopsis::geometry::camera::Pose;
     use stereopsis::geometry::robust::{RobustConfig, robust_essential};
 
-    /// How many of 20 draws are said to have only turned, with a baseline of `baseline` times half a metre, noise
-    /// of 0.3 px and a fifth of the matches wrong.
+    /// How many of 20 draws are said to have only turned, with a baseline of `baseline` times half a metre,
+    /// noise of 0.3 px and a fifth of the matches wrong.
     fn said(count: usize, baseline: f64) -> usize {
         (0..20)
             .filter(|&seed| {

@@ -59,9 +59,9 @@ macro_rules! c_api_of_driving {
         }
 
         /// Decides on the frame of a finder that was finished last, at a speed. In this order: blind where
-        /// another one has begun since, or the frame is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
-        /// found, or too little of it is seen; slow down for what is within twice the stopping distance or
-        /// the time to contact; clear. No hardware is called.
+        /// another one has begun since, or the frame is not to be trusted; stop for what is within the
+        /// stopping distance; blind where the ground is not found, or too little of it is seen; slow down for
+        /// what is within twice the stopping distance or the time to contact; clear. No hardware is called.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_drive_decide"))]
         pub unsafe extern "C" fn stereopsis_drive_decide(
             handle: *mut DriveHandle,

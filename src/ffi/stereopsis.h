@@ -2723,9 +2723,9 @@ stereopsis_status stereopsis_drive_stopping_mm(struct stereopsis_drive *handle,
 
 /**
  * Decides on the frame of a finder that was finished last, at a speed. In this order: blind where
- * another one has begun since, or the frame is not to be trusted; stop for what is within the stopping distance; blind where the ground is not
- * found, or too little of it is seen; slow down for what is within twice the stopping distance or
- * the time to contact; clear. No hardware is called.
+ * another one has begun since, or the frame is not to be trusted; stop for what is within the
+ * stopping distance; blind where the ground is not found, or too little of it is seen; slow down for
+ * what is within twice the stopping distance or the time to contact; clear. No hardware is called.
  */
 stereopsis_status stereopsis_drive_decide(struct stereopsis_drive *handle,
                                           struct stereopsis_obstacles *obstacles,

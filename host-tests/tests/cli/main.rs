@@ -29,3 +29,4 @@ mod results;
 mod support;
 mod two_view;
 mod view;
+mod walk;

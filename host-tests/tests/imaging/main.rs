@@ -1,6 +1,7 @@
 //! What is made of lines before they are matched.
 //!
-//! * `census`, `gradient`, `noise`, `remap`: stages against their naive twins.
+//! * `census`, `gradient`, `noise`, `remap`: stages against their naive twins. `remap_faults`: raw lines that
+//!   are lost.
 //! * `exposure`: one exposure for two cameras, and what their pictures say about their health. `balance`:
 //!   pairs whose cameras are exposed otherwise.
 

@@ -57,8 +57,8 @@ const FAULTS: [Fault; 9] = [
     Fault::TimesOut,
 ];
 
-/// A rectified row that needs a lost raw one is reported lost, and every other one is what it would be without
-/// the fault.
+/// A rectified row that needs a lost raw one is reported lost, and every other one is what it would be
+/// without the fault.
 #[test]
 fn a_lost_raw_line_loses_the_rows_that_need_it() {
     let lens = camera(QVGA, 300.0, [-0.1, 0.02, 0.0, 0.0, 0.0]);

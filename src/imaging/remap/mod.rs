@@ -22,6 +22,7 @@ mod error;
 mod lines;
 mod near;
 mod pair;
+mod rectified_pair;
 mod sample;
 mod segment;
 mod segments;
@@ -29,5 +30,6 @@ mod table;
 
 pub use error::{RemapError, RemapTableError};
 pub use lines::Remap;
-pub use pair::{RectifiedPair, RectifiedPairError, RemapPair, RemapPairError};
+pub use pair::{RemapPair, RemapPairError};
+pub use rectified_pair::{RectifiedPair, RectifiedPairError};
 pub use table::RemapTable;

@@ -26,8 +26,8 @@ pub const EXAMPLE: &str = "Example:
 
 Written is one JSON object: fundamental (3x3 in rows, p1^T F p2 = 0 for a point p1 of the first image and p2 \
                            of the second), inliers (whether each match is within the threshold), time_us \
-                           (the estimate alone, the best of five), log10_false_alarms (the logarithm of how many such \
-                           matrices unrelated matches would have); with ransac also samples and \
+                           (the estimate alone, the best of five), log10_false_alarms (the logarithm of how \
+                           many such matrices unrelated matches would have); with ransac also samples and \
                            miss_probability, the probability that a better estimate was missed. The picture \
                            has both images with the points of all matches, red where one does not agree, \
                            and for some of the others the lines on which they must lie.";
@@ -115,8 +115,8 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
     print(&format!("{kept} of {n} matches within {} px, {best:.0} us\n", args.robust.threshold))
 }
 
-/// The logarithm of how often so many matches agree by chance, or that these do. All of those of which the user
-/// says that they are right may be as few as they like.
+/// The logarithm of how often so many matches agree by chance, or that these do. Those that the user says are
+/// right may be few, where all of them agree.
 pub fn by_chance(seen: &[Correspondence<f64>], kept: usize, args: &RobustArgs) -> Result<f64, String> {
     let log10 = log10_false_alarms(seen, kept, args.threshold);
     let all_are_right = args.method == TwoViewMethod::EightPoint && kept == seen.len();

@@ -20,8 +20,8 @@ pub const EXAMPLE: &str = "Example:
   stereo odometry --sequence street --calib street/calib.txt --truth street/poses.txt --out found.txt
 
 Written into the folder: left/000000.png and so on, right/000000.png, calib.txt and poses.txt in KITTI's \
-                           formats, and walk.json, what was asked for: a folder with frames and without it is \
-                           left alone.";
+                           formats, and walk.json, what was asked for: a folder with frames and without \
+                           it is left alone.";
 
 /// What tells a sequence that this command wrote from others.
 const MARK: &str = "walk.json";

@@ -85,7 +85,7 @@ fn registers_in_the_address_space_and_a_ring_give_the_same_rows() {
         assert_eq!(pipeline.lost(), 1, "{row} {fault:?}");
         for (y, (found, own)) in rows.iter().zip(&expected).enumerate() {
             let is_flagged = found.1.iter().all(|flags| flags.contains(PixelFlags::DAMAGED));
-            assert_eq!(is_flagged, (row.saturating_sub(4)..=row + 6).contains(&y), "{row} {fault:?} {y}");
+            assert_eq!(is_flagged, (row.saturating_sub(4)..=row + 10).contains(&y), "{row} {fault:?} {y}");
             assert!(is_flagged || found == own, "{row} {fault:?} {y}");
         }
         device.bus().dma().block.faults = [(9, WinnerFault::CutOff)].into();

@@ -267,7 +267,7 @@ static void drives(void) {
     CHECK(verdict.decision == STEREOPSIS_DECISION_STOP && verdict.stopping_mm > 2600);
     EXPECT(stereopsis_drive_decide(drive, h, 0, &verdict), OK);
     CHECK(verdict.contact_ms == STEREOPSIS_NO_CONTACT);
-    CHECK(stereopsis_speed_mm_s(20, 40000) == 500 && stereopsis_speed_mm_s(20, 0) == 0);
+    CHECK(stereopsis_speed_mm_s(20, 40000) == 500 && stereopsis_speed_mm_s(20, 0) == 65535);
     EXPECT(stereopsis_free_space_update(NULL, h), NULL);
     EXPECT(stereopsis_free_space_update(space, NULL), NULL);
     EXPECT(stereopsis_free_space_sectors(space, NULL, SECTORS), NULL);

@@ -30,7 +30,7 @@ pub fn checks(u: &mut Unstructured<'_>) -> Result<Checks> {
         speckle_run: u.arbitrary()?,
         fattening_slope: Disparity::from_raw(u.arbitrary()?),
         open_run: u.arbitrary()?,
-        open_margin: u.arbitrary()?,
+        open_margin: u.int_in_range(0..=Checks::MOST_OPEN_MARGIN + 1)?,
         refuse_repeats: u.arbitrary()?,
     })
 }
@@ -58,7 +58,7 @@ pub fn config(u: &mut Unstructured<'_>, [width, height]: [u16; 2], disparities: 
         checks: checks(u)?,
         penalties: penalties(u)?,
         confidence: u.arbitrary()?,
-        min_confidence: if u.arbitrary()? { 0 } else { u.arbitrary()? },
+        min_confidence: if u.arbitrary()? { 0 } else { u.int_in_range(0..=Config::MOST_CONFIDENCE + 1)? },
         noise: *u.choose(&Noise::ALL)?,
         ..Config::for_method::<Block>(width, height, disparities)
     })

@@ -27,7 +27,7 @@ prop_compose! {
         speckle_run: u8,
         fattening_slope in prop_oneof![0u16..200, Just(u16::MAX)].prop_map(Disparity::from_raw),
         open_run in prop_oneof![Just(0u8), 1u8..20, any::<u8>()],
-        open_margin in prop_oneof![Just(0u8), 1u8..130],
+        open_margin in prop_oneof![Just(0u8), 1u8..=127],
         refuse_repeats: bool,
     ) -> Checks {
         Checks {
@@ -43,7 +43,7 @@ prop_compose! {
     pub(super) fn any_config()(
         width in 1u16..=300, height in 1u16..=60, disparities in 16u16..=256, min_disparity in 0u16..60,
         checks in any_checks(), confidence: bool,
-            min_confidence in proptest::sample::select(&[0, 0, 1, 2, 60, 130, 208][..]),
+            min_confidence in proptest::sample::select(&[0, 0, 1, 2, 60, 130, 207][..]),
         noise in proptest::sample::select(&Noise::ALL[..]), seed: u64,
     ) -> Config {
         let penalties = random_penalties(&mut Random::new(seed));

@@ -86,7 +86,7 @@ fn random_checks(random: &mut Random, of_surfaces: &mut Random) -> Checks {
             u16::MAX,
         ])),
         open_run: *of_surfaces.pick(&[0, 1, 5, u8::MAX]),
-        open_margin: *of_surfaces.pick(&[0, 0, 1, 40, 127, 128]),
+        open_margin: *of_surfaces.pick(&[0, 0, 1, 40, 126, 127]),
         refuse_repeats: of_surfaces.below(2) == 1,
     }
 }

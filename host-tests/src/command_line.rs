@@ -1,6 +1,12 @@
-//! What programs say on standard error when they cannot do what is asked: one line.
+//! The command line: its words, and what programs say on standard error when they cannot do what is asked,
+//! one line.
 
 use clap::error::{Error, ErrorKind};
+
+/// The command line, word by word.
+pub fn words() -> Vec<String> {
+    std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect()
+}
 
 /// clap's message, which has several paragraphs, as one line: the first one and the tips. `commands` is what
 /// is told to one who names another command.

@@ -84,7 +84,7 @@ impl Rows {
     pub fn summary(&self) -> String {
         let health = match self.health {
             "worn" => "worn: some answers are lost",
-            "bad" => "bad: most answers are lost",
+            "bad" => "bad: many answers are lost",
             good => good,
         };
         format!("{:.2} px off (+- {:.2}), {health}", self.error_px, self.sigma_px)

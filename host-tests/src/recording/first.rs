@@ -1,38 +1,44 @@
-//! The pictures of a recording's first frame, taken before it is played.
+//! The pictures of a recording's first frames, taken before it is played.
 
 use super::{Entry, Header, Recording, RecordingError, most_rows};
 use image::GrayImage;
 use std::iter::Chain;
+use std::mem;
 use std::vec::IntoIter;
 
 /// The records of a recording from its beginning, of which some were read already.
 pub type FromStart = Chain<IntoIter<Result<Entry, RecordingError>>, Recording>;
 
-/// The left and the right picture of a recording's first frame, and all of its records from the beginning.
+/// The left and the right pictures of a recording's first frames, up to so many, and all of its records from
+/// the beginning.
 ///
-/// A row that did not come is the row above it. There are no pictures where no row came.
-pub fn first_pair(mut recording: Recording) -> (Option<[GrayImage; 2]>, FromStart) {
+/// A row that did not come is the row above it. A frame of which no row came has no pictures.
+pub fn first_pairs(mut recording: Recording, most: usize) -> (Vec<[GrayImage; 2]>, FromStart) {
     let header = recording.header();
-    let mut rows = vec![None; usize::from(header.height)];
-    let mut records = Vec::new();
-    let mut frames = 0;
+    let none = || vec![None; usize::from(header.height)];
+    let (mut rows, mut pairs, mut records, mut frames) = (none(), Vec::new(), Vec::new(), 0);
     // A file may hold any number of records of one frame.
-    while frames < 2 && records.len() <= most_rows(header.height) as usize {
+    while frames <= most && records.len() <= most * most_rows(header.height) as usize {
         let Some(record) = recording.next() else { break };
         match &record {
-            Ok(Entry::Frame(_)) => frames += 1,
-            Ok(Entry::Line { start, left, right }) if frames == 1 => {
+            Ok(Entry::Frame(_)) => {
+                frames += 1;
+                pairs.extend(pictures(header, mem::replace(&mut rows, none())));
+            }
+            Ok(Entry::Line { start, left, right }) if frames > 0 => {
                 if let Some(row) = rows.get_mut(usize::from(start.row)) {
                     *row = Some([left.clone(), right.clone()]);
                 }
             }
             // What follows a fault of the file is not played either.
-            Ok(Entry::Cut) | Err(_) => frames = 2,
+            Ok(Entry::Cut) | Err(_) => frames = most + 1,
             _ => {}
         }
         records.push(record);
     }
-    (pictures(header, rows), records.into_iter().chain(recording))
+    pairs.extend(pictures(header, rows));
+    pairs.truncate(most);
+    (pairs, records.into_iter().chain(recording))
 }
 
 /// The left and the right picture of rows, of which one that did not come is the row above it; none where no

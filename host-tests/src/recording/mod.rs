@@ -4,7 +4,7 @@
 //! * [`record()`]: a stereo source into a file. [`Recording`]: such a file. [`Playback`]: it as a stereo
 //!   source again.
 //! * [`Ahead`]: its records with both cameras of one exposure, each frame measured before it is played.
-//! * [`first_pair()`]: the pictures of its first frame, before it is played.
+//! * [`first_pairs()`]: the pictures of its first frames, before it is played.
 //! * [`Pictures`]: images, or folders of them, as a stereo source at a frame rate.
 //!
 //! A recording begins with a line of text, `stereopsis recording 1`, and a line of JSON: `width`, `height`,
@@ -26,7 +26,7 @@ mod pictures;
 mod playback;
 
 pub use ahead::{Ahead, Seen};
-pub use first::{FromStart, first_pair};
+pub use first::{FromStart, first_pairs};
 pub use pictures::{Pictures, PicturesError};
 pub use playback::{Playback, RecordedFault};
 

@@ -1,17 +1,9 @@
-//! The figures of a run as rows of a table, and what is wrong with its pair.
+//! The figures of a run as rows of a table.
 
 use super::{Exposure, Report, percent, svg};
-use crate::rows::Rows;
 use stereopsis::units::PixelFlags;
 
 impl Report<'_> {
-    /// What is wrong with the pair and the search, a line each; nothing where all is well.
-    pub(super) fn warnings(&self) -> Vec<String> {
-        let s = self.summary;
-        let fault = s.pair.as_ref().and_then(|pair| pair.fault).map(|fault| fault.to_string());
-        [fault, s.rows.as_ref().and_then(Rows::warning), s.few_answers()].into_iter().flatten().collect()
-    }
-
     /// All figures, with names.
     pub(super) fn figures(&self) -> Vec<(String, String)> {
         let s = self.summary;
@@ -46,8 +38,7 @@ impl Report<'_> {
                 format!("{}, {} in rows", pair.matches, pair.matches_in_rows),
             );
             add("Features beyond the search", percent(pair.beyond_search));
-            let lacks = [pair.untextured, pair.over_exposed, pair.under_exposed].map(percent);
-            add("Without texture / white / black", lacks.join(" / "));
+            add("The images", pair.lacks());
         }
         if let Some(fault) = s.pair.as_ref().and_then(|pair| pair.fault) {
             add("The pair", fault.to_string());

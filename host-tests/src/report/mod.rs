@@ -94,8 +94,8 @@ impl Report<'_> {
             s.kernel,
         )?;
         writeln!(out, "<ul class=\"headline\">{}</ul>", self.headline())?;
-        for warning in self.warnings() {
-            writeln!(out, "<p class=\"warning\">{}</p>", escape(&warning))?;
+        for warning in self.summary.warnings() {
+            writeln!(out, "<p class=\"warning\">{}</p>", escape(warning))?;
         }
         writeln!(out, "{}<div class=\"figures\">", explore::body())?;
         self.pictures(out)?;

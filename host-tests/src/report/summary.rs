@@ -1,6 +1,7 @@
 //! The figures of a run, for `summary.json` and the report.
 
 use super::Accuracy;
+use crate::command_line::words;
 use crate::depth_samples::MILLIMETRE;
 use crate::map::{DisparityMap, quantile};
 use crate::pair::PairCheck;
@@ -183,7 +184,7 @@ impl Summary {
         let map = &outcome.map;
         Self {
             version: env!("CARGO_PKG_VERSION"),
-            command: std::env::args_os().map(|word| word.to_string_lossy().into_owned()).collect(),
+            command: words(),
             inputs: Vec::new(),
             method: method.name(),
             filter,
@@ -210,14 +211,22 @@ impl Summary {
         }
     }
 
-    /// The same with how well rows agree.
-    pub fn with_rows(self, rows: Option<Rows>) -> Self {
-        Self { rows, ..self }
+    /// The same with what features say of the pair and of its rows.
+    pub fn with_pair(self, pair: Option<PairCheck>, rows: Option<Rows>) -> Self {
+        let pair = pair.map(|pair| pair.with_warning(rows.as_ref().and_then(Rows::warning)));
+        let summary = Self { pair, rows, ..self };
+        let few = summary.few_answers();
+        Self { pair: summary.pair.map(|pair| pair.with_warning(few)), ..summary }
+    }
+
+    /// What is wrong with the pair and its search, and what would help: a line each.
+    pub fn warnings(&self) -> &[String] {
+        self.pair.as_ref().map_or(&[], |pair| &pair.warnings)
     }
 
     /// Why there are few answers, where fewer than half of the pixels have one: what the pictures lack, and
     /// the flags of the pixels without.
-    pub fn few_answers(&self) -> Option<String> {
+    fn few_answers(&self) -> Option<String> {
         let pair = self.pair.as_ref()?;
         let pixels = f64::from(self.width) * f64::from(self.height);
         // Both pictures have about the same: what the right one alone lacks its camera did not see.
@@ -251,11 +260,6 @@ impl Summary {
     pub fn with_inputs<'a>(self, inputs: impl IntoIterator<Item = &'a Path>) -> Self {
         let inputs = inputs.into_iter().map(|path| path.display().to_string()).collect();
         Self { inputs, ..self }
-    }
-
-    /// The same with what features say of the pair.
-    pub fn with_pair(self, pair: Option<PairCheck>) -> Self {
-        Self { pair, ..self }
     }
 
     /// The same with the noise that a meter measured.

@@ -71,13 +71,13 @@ fn a_calibration_of_rectified_images_is_checked_as_match_takes_it() {
     let said = text(&run.stdout);
     // 999.421 px x 0.193001 m / (63 px + 32.778 px)
     assert!(run.status.success() && said.contains("from 2.014 m (63 px"), "{said}");
-    // 192.889 px m x 5 % / .15 px, and a parallax of 127 px + 32.778 px.
+    // Parallaxes of 0 px + 32.778 px, where 5 % would be at 64.3 m, and of 127 px + 32.778 px.
     for line in [
-        "accuracy     within 5 % up to 64.30 m: one standard deviation\n",
+        " of a search of 64) to 5.885 m (0 px)\n",
+        "accuracy     within 5 % up to 5.88 m: one standard deviation\n",
         "limit        the search: depths are told from 2.014 m on\n",
         "change       --disparities 128 would begin at 1.207 m\n",
-        "limit        the accuracy: beyond 64.30 m the deviation is over 5 %\n",
-        "change       a baseline of 386 mm would reach 128.59 m within 5 %\n",
+        "limit        the search: nothing lies beyond 5.885 m, at 0 px\n",
     ] {
         assert!(said.contains(line), "{line}{said}");
     }

@@ -3,6 +3,7 @@
 use super::support::{Bench, HEIGHT, WIDTH, encode, names, pair, stereo, text};
 use image::{GrayImage, ImageFormat, Luma};
 use serde_json::Value;
+use stereopsis_host::scene::Scene;
 
 /// Rows that the right camera stands too high in its housing: its picture is as far down.
 const DOWN: u32 = 4;
@@ -221,6 +222,20 @@ fn rows_are_aligned_by_matches_alone() {
     assert!((first.1 - second.1).abs() < 0.01 && first.0 > second.0, "{first:?} {second:?}");
     let shown = image::open(bench.path("out/valid_right.png")).expect("a mask").into_luma8();
     assert!(shown.iter().filter(|&&seen| seen == 255).count() > 96 * 48 / 2);
+    // What is not seen has no answers, and nothing has a depth.
+    let file = |name: &str| bench.path("out").join(name).display().to_string();
+    let (left, right, cameras, out) =
+        (file("left.png"), file("right.png"), file("rectified.json"), file("matched"));
+    let matched = ["match", "--left", &left, "--right", &right, "--disparities", "32", "--out", &out];
+    let run = stereo(matched.iter().chain(&["--calib", &cameras]));
+    assert!(run.status.success() && text(&run.stderr).contains("of matches alone"), "{}", text(&run.stderr));
+    let flags = image::open(bench.path("out/matched/flags.png")).expect("flags").into_luma8();
+    let seen = image::open(bench.path("out/valid_left.png")).expect("a mask").into_luma8();
+    assert!(seen.contains(&0));
+    assert!(seen.iter().zip(flags.iter()).all(|(&seen, &flag)| seen != 0 || flag == 1));
+    assert!(!bench.path("out/matched/depth.png").exists());
+    let depths = [&matched[..], &["--calib", &cameras, "--max-depth", "5"]].concat();
+    bench.refused(&depths, "knows no depths");
 
     let forward = |x: f64, y: f64, _| {
         let by = 1.01 + 0.012 * ((7.0 * x + 13.0 * y) % 11.0);
@@ -237,4 +252,37 @@ fn rows_are_aligned_by_matches_alone() {
     let both = with(&good, "--calib", &bench.path("stereo.yml").display().to_string());
     bench.refused(&both, "--calib");
     bench.refused(&with(&good, "--alpha", "0"), "--alpha");
+}
+
+/// Rows are far apart when the wrong camera is taken for the left one: nothing but the other order fits.
+#[test]
+fn swapped_raw_cameras_are_refused() {
+    const DEEP: u32 = 20;
+    let bench = Bench::new();
+    let (left, right) = Scene::demo().render();
+    let (width, height) = left.dimensions();
+    let lower = GrayImage::from_fn(width, height, |x, y| *right.get_pixel(x, y.saturating_sub(DEEP)));
+    let file = |name: &str, picture: &GrayImage| {
+        bench.put(name, &encode(picture, ImageFormat::Png)).display().to_string()
+    };
+    let [left, right] = [file("demo.png", &left), file("lower.png", &lower)];
+    let calib = opencv()
+        .replace(&format!("image_width: {WIDTH}"), &format!("image_width: {width}"))
+        .replace(&format!("image_height: {HEIGHT}"), &format!("image_height: {height}"))
+        .replace("47.5", &format!("{}", f64::from(width - 1) / 2.0))
+        .replace("23.5,", &format!("{},", f64::from(height - 1) / 2.0))
+        .replace("27.5,", &format!("{},", f64::from(height - 1) / 2.0 + f64::from(DEEP)))
+        .replace("100.,", &format!("{width}.,"));
+    let calib = bench.put("deep.yml", calib.as_bytes()).display().to_string();
+    let out = bench.path("out").display().to_string();
+    let order = |left: &str, right: &str, more: &[&str]| {
+        let words = ["match", "--rectify", "--calib", &calib, "--left", left, "--right", right];
+        let search = ["--disparities", "64", "--method", "fast", "--out", &out];
+        [&words[..], &search, more].concat().into_iter().map(str::to_owned).collect::<Vec<_>>()
+    };
+    bench.refused(&order(&right, &left, &[]), "exchange left and right, or give --force");
+    for good in [order(&left, &right, &[]), order(&right, &left, &["--force"])] {
+        let run = stereo(&good);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+    }
 }

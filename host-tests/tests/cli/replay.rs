@@ -1,6 +1,8 @@
 //! `stereo record` and `stereo replay`: their files, and what they say when they cannot.
 
 use super::support::{Bench, names, stereo, text};
+use crate::results::json;
+use serde_json::Value;
 use std::fs;
 use std::time::Instant;
 use stereopsis_host::pfm;
@@ -231,10 +233,24 @@ fn swapped_cameras_are_refused_unless_forced() {
     for from in [&swapped, &file] {
         let replay = ["replay", "--from", from, "--disparities", "64", "--method", "fast", "--out", &out];
         bench.refused(&replay, "exchange left and right, or give --force");
-        run(&[&replay[..], &["--force"]].concat());
+        let forced = stereo([&replay[..], &["--force"]].concat());
+        assert!(forced.status.success() && text(&forced.stderr).contains("swapped"));
         fs::remove_dir_all(&out).expect("results");
     }
     // The same cameras in their order.
     run(&["record", "--left", &r, "--right", &l, "--faults", "0.02", "--out", &file]);
-    run(&["replay", "--from", &file, "--disparities", "64", "--method", "fast", "--out", &out]);
+    let replay = |options: &[&str]| {
+        let words = ["replay", "--from", &file, "--method", "fast", "--out", &out, "--disparities"];
+        stereo(words.iter().chain(options))
+    };
+    let short = replay(&["16", "--quiet"]);
+    assert!(short.status.success() && short.stdout.is_empty());
+    assert!(text(&short.stderr).contains("give --min-disparity"), "{}", text(&short.stderr));
+    let auto = replay(&["auto", "--json"]);
+    assert!(auto.status.success() && auto.stderr.is_empty(), "{}", text(&auto.stderr));
+    let printed: Value = serde_json::from_slice(&auto.stdout).expect("JSON");
+    assert_eq!(printed, json(&bench.path("out/summary.json")));
+    assert!(printed["pair"]["fault"].is_null() && printed["pair"]["warnings"] == serde_json::json!([]));
+    assert_eq!((&printed["command"][1], &printed["inputs"][0]), (&"replay".into(), &file.as_str().into()));
+    assert_eq!(printed["pair"]["search"][1], printed["disparities"]);
 }

@@ -34,6 +34,11 @@ impl Reach {
         (parallax > 0.0).then(|| self.fb_px_m / parallax)
     }
 
+    /// The depth at the smallest disparity searched, or at a parallax of 1 px where that is more, m.
+    pub fn farthest_m(&self) -> f64 {
+        self.fb_px_m / (f64::from(self.min_disparity) + self.offset_px).max(1.0)
+    }
+
     /// The standard deviation of a depth, m.
     pub fn sigma_m(&self, depth_m: f64) -> f64 {
         depth_m * depth_m / self.fb_px_m * self.sigma_px
@@ -65,12 +70,16 @@ impl Reach {
             );
             return;
         };
+        let (searched, least) = (self.disparities, self.min_disparity);
+        let (tenth_m, farthest_m) = (self.within_m(0.1), self.farthest_m());
+        let to = if farthest_m < tenth_m {
+            format!("{farthest_m:.3} m ({least} px)")
+        } else {
+            format!("about {tenth_m:.1} m, where an error of {sigma_px} px is a tenth")
+        };
         let _ = writeln!(
             text,
-            "depths       from {nearest_m:.3} m ({most} px, of a search of {}) to about {:.1} m, where an \
-             error of {sigma_px} px is a tenth",
-            self.disparities,
-            self.within_m(0.1)
+            "depths       from {nearest_m:.3} m ({most} px, of a search of {searched}) to {to}"
         );
         for &z in distances_m.iter().filter(|z| self.tells(**z)) {
             let (disparity, sigma_mm) = (self.disparity_px(z), 1000.0 * self.sigma_m(z));
@@ -96,6 +105,8 @@ mod tests {
         let reach = Reach { fb_px_m: 50.0, offset_px: 0.0, min_disparity: 8, disparities: 48, sigma_px: 0.1 };
         assert_eq!((reach.most_px(), reach.disparity_px(5.0)), (55.0, 10.0));
         assert!(reach.tells(5.0) && !reach.tells(10.0) && !reach.tells(0.9));
+        assert_eq!((reach.farthest_m(), Reach { min_disparity: 0, ..reach }.farthest_m()), (6.25, 50.0));
+        assert_eq!(Reach { offset_px: 12.0, ..reach }.farthest_m(), 2.5);
         assert!((reach.sigma_m(5.0) - 0.05).abs() < 1e-12 && (reach.within_m(0.01) - 5.0).abs() < 1e-12);
     }
 }

@@ -10,8 +10,9 @@ const FASTEST_MHZ: f64 = 1000.0;
 /// What is wanted and not had, and what would help.
 pub fn of(plan: &Plan, tables: &Tables) -> (Vec<String>, Vec<String>) {
     let (mut limits, mut changes) = (Vec::new(), Vec::new());
-    for (limit, help) in
-        [nearest(plan), accuracy(plan), memory(plan), speed(plan, tables)].into_iter().flatten()
+    for (limit, help) in [nearest(plan), farthest(plan), accuracy(plan), memory(plan), speed(plan, tables)]
+        .into_iter()
+        .flatten()
     {
         limits.push(limit);
         changes.extend(help);
@@ -59,6 +60,18 @@ fn nearest(plan: &Plan) -> Found {
         ));
     }
     Some((limit, changes))
+}
+
+/// Whether the search reaches what is far: where images are cropped alike it does down to infinity.
+fn farthest(plan: &Plan) -> Found {
+    let far = plan.wanted.farthest_m;
+    let end_m = plan.end_m.filter(|&end_m| end_m < far)?;
+    let disparity = plan.rig.disparity_px(far);
+    let limit = format!(
+        "the search: {far} m is at a disparity of {disparity:.1} px, below 0; nothing is told beyond \
+         {end_m:.2} m"
+    );
+    Some((limit, vec!["images with the same principal point would reach infinity".to_owned()]))
 }
 
 /// Whether what is far is told well enough.

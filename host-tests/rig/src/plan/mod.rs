@@ -101,7 +101,7 @@ pub struct Plan {
     pub nearest_m: f64,
     /// The depth up to which the wanted accuracy is had, m.
     pub reach_m: f64,
-    /// The depth beyond which nothing is told, m; absent where the search begins at 0.
+    /// The depth beyond which nothing is told, m; absent where the search reaches infinity.
     pub end_m: Option<f64>,
     /// Depths of the wanted range.
     pub depths: Vec<Depth>,
@@ -157,7 +157,7 @@ impl Search {
     /// The depth beyond which nothing is told, m; `None` where that is beyond all.
     fn end_m(&self, rig: &Rig) -> Option<f64> {
         let parallax = f64::from(self.min_disparity) + rig.offset_px;
-        (self.min_disparity > 0 && parallax > 0.0).then(|| rig.fb_px_m() / parallax)
+        (parallax > 0.0).then(|| rig.fb_px_m() / parallax)
     }
 
     /// The depths that it tells.

@@ -36,10 +36,7 @@ impl Plan {
         );
         let distances: Vec<_> = self.depths.iter().map(|depth| depth.depth_m).collect();
         search.reach(rig).describe(&distances, text);
-        if let Some(end_m) = self.end_m {
-            let _ = writeln!(text, "             what is beyond {end_m:.2} m is not told");
-        }
-        accuracy(self.wanted.accuracy, self.reach_m, text);
+        accuracy(self.wanted.accuracy, self.reach_m.min(search.reach(rig).farthest_m()), text);
         for depth in
             self.depths.first().into_iter().chain(self.depths.last().filter(|_| self.depths.len() > 1))
         {
@@ -96,12 +93,13 @@ impl Plan {
 /// Lines of text of a rig whose search is given: how well its depths are told, what limits it at either end,
 /// and what would help.
 pub fn describe_search(reach: &Reach, baseline_m: f64, share: f64, text: &mut String) {
-    let (within_m, aim, mm) = (reach.within_m(share), percent(share), 1000.0 * baseline_m);
+    let (within_m, farthest_m) = (reach.within_m(share), reach.farthest_m());
+    let (aim, mm) = (percent(share), 1000.0 * baseline_m);
     let more = reach.disparities.saturating_mul(2).min(Config::MOST_DISPARITIES);
     let wider = Reach { disparities: more, ..*reach };
     let begins = |reach: &Reach| reach.nearest_m().map(|near| format!("would begin at {near:.3} m"));
     if let Some(nearest_m) = reach.nearest_m() {
-        accuracy(share, within_m, text);
+        accuracy(share, within_m.min(farthest_m), text);
         let _ = writeln!(text, "limit        the search: depths are told from {nearest_m:.3} m on");
     }
     let shorter = Reach { fb_px_m: reach.fb_px_m / 2.0, ..*reach };
@@ -112,6 +110,12 @@ pub fn describe_search(reach: &Reach, baseline_m: f64, share: f64, text: &mut St
     };
     if let Some(help) = help {
         let _ = writeln!(text, "change       {help}");
+    }
+    if farthest_m < within_m {
+        let least = reach.min_disparity;
+        let _ =
+            writeln!(text, "limit        the search: nothing lies beyond {farthest_m:.3} m, at {least} px");
+        return;
     }
     let _ = writeln!(text, "limit        the accuracy: beyond {within_m:.2} m the deviation is over {aim} %");
     let (longer, farther) = (2.0 * mm, 2.0 * within_m);

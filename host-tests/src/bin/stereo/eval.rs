@@ -206,7 +206,8 @@ fn by_matching(
     };
     let named = |e: Failure| Failure::new(format!("{}: {e}", scene.name));
     search.check(&args.method, width, height).map_err(named)?;
-    let Look { config, .. } = look(&search, &args.method, [&left, &right], None, None).map_err(named)?;
+    let Look { config, .. } =
+        look(&search, &args.method, [&left, &right], None, None, || None).map_err(named)?;
     if let Some(rival) = rival {
         rival.take([&left, &right], [config.disparities, config.min_disparity])?;
     }

@@ -11,6 +11,7 @@ use stereopsis::geometry::camera::{Camera, ImageSize};
 use stereopsis::matching::Config;
 use stereopsis_host::mock::MockCamera;
 use stereopsis_host::pair::{self, PairCheck, PairFault, PairMatches};
+use stereopsis_host::rectify::RectifiedPictures;
 use stereopsis_host::rows::Rows;
 
 #[derive(Clone, Debug, Args)]
@@ -94,13 +95,38 @@ pub fn disparities(text: &str) -> Result<Disparities, String> {
     shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
-/// Refuses a pair of swapped cameras.
-pub fn refuse_swapped(pictures: [&GrayImage; 2]) -> Result<(), Failure> {
+/// Refuses a pair of swapped cameras; `exchanged` is what the pictures would be if the cameras were exchanged
+/// before they are rectified.
+pub fn refuse_swapped(
+    pictures: [&GrayImage; 2],
+    exchanged: impl FnOnce() -> Option<RectifiedPictures>,
+) -> Result<(), Failure> {
     // Where nothing is found nothing is said.
-    let found = PairMatches::find(pictures, None).ok().and_then(|matches| pair::fault(pictures, &matches));
-    match found {
-        Some(fault @ PairFault::Swapped) => Err(Failure::new(format!("{fault}, or give --force"))),
+    match PairMatches::find(pictures, None) {
+        Ok(matches) if is_swapped(pictures, &matches, exchanged) => {
+            Err(Failure::new(format!("{}, or give --force", PairFault::Swapped)))
+        }
         _ => Ok(()),
+    }
+}
+
+/// Whether the cameras are swapped: pictures that a calibration rectified may be a pair only then.
+fn is_swapped(
+    pictures: [&GrayImage; 2],
+    matches: &PairMatches,
+    exchanged: impl FnOnce() -> Option<RectifiedPictures>,
+) -> bool {
+    let is_pair = |RectifiedPictures { pictures, valid, .. }: RectifiedPictures| {
+        let pictures = pictures.each_ref();
+        PairMatches::find(pictures, Some(valid.each_ref())).is_ok_and(|found| {
+            found.is_aligned(pictures[0].width()) && pair::fault(pictures, &found).is_none()
+        })
+    };
+    match pair::fault(pictures, matches) {
+        Some(PairFault::Swapped) => true,
+        Some(PairFault::Same | PairFault::Still) => false,
+        _ if matches.is_aligned(pictures[0].width()) => false,
+        _ => exchanged().is_some_and(is_pair),
     }
 }
 
@@ -118,34 +144,47 @@ pub fn look(
     pictures: [&GrayImage; 2],
     valid: Option<[&GrayImage; 2]>,
     camera: Option<&Camera<f64>>,
+    exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<Look, Failure> {
     // Pictures have at most 4096 columns and rows.
     let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
     // Pictures without features are matched as well as they can be.
     let matches = PairMatches::find(pictures, valid).ok();
-    let [first, count] = match (args.disparities, &matches) {
-        (Disparities::Count(count), _) => [args.min_disparity.unwrap_or(0), count],
-        (Disparities::Auto, matches) => {
-            let found = matches.as_ref().and_then(|matches| pair::search(pictures, matches));
-            let [first, count] = found.ok_or_else(|| {
-                Failure::new("--disparities auto: the images show too little to find a range; give a number")
-            })?;
-            // From another first disparity on to the same last one.
-            let last = first + count;
-            let first = args.min_disparity.unwrap_or(first);
-            [first, last.saturating_sub(first).max(1).next_multiple_of(16).min(Config::MOST_DISPARITIES)]
-        }
+    if let Some(matches) = matches.as_ref().filter(|_| !args.force)
+        && is_swapped(pictures, matches, exchanged)
+    {
+        return Err(Failure::new(format!("{}, or give --force", PairFault::Swapped)));
+    }
+    let [first, count] = match args.disparities {
+        Disparities::Count(count) => [args.min_disparity.unwrap_or(0), count],
+        Disparities::Auto => searched(pictures, matches.as_ref(), args.min_disparity)?,
     };
     let range = RangeArgs { disparities: count, min_disparity: first };
     let config = input::config(&range, method, width, height)?;
     let config = Config { confidence: true, ..config };
     let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
-    let check = PairCheck::new(pictures, &matches, &config);
-    if let Some(fault @ PairFault::Swapped) = check.fault.filter(|_| !args.force) {
-        return Err(Failure::new(format!("{fault}, or give --force")));
-    }
+    let check = PairCheck::new(pictures, valid, &matches, &config);
     // Rows of images that are turned or mirrored say nothing of the cameras.
     let has_rows = matches!(check.fault, None | Some(PairFault::Swapped));
     let rows = has_rows.then(|| Rows::measure(&matches, ImageSize { width, height }, camera)).flatten();
     Ok(Look { config, check: Some(check), rows })
+}
+
+/// The search that a pair shows, from the first disparity on that is given.
+fn searched(
+    pictures: [&GrayImage; 2],
+    matches: Option<&PairMatches>,
+    first: Option<u16>,
+) -> Result<[u16; 2], Failure> {
+    let refused = |why: &dyn std::fmt::Display| Failure::new(format!("--disparities auto: {why}"));
+    let too_little = "the images show too little to find a range; give a number";
+    let matches = matches.ok_or_else(|| refused(&too_little))?;
+    if let Some(fault) = pair::fault(pictures, matches) {
+        return Err(refused(&fault));
+    }
+    let [found, count] = pair::search(pictures, matches).ok_or_else(|| refused(&too_little))?;
+    let (first, last) = (first.unwrap_or(found), found + count);
+    // From another first disparity on to the same last one.
+    let count = last.saturating_sub(first).max(1).next_multiple_of(16);
+    Ok([first, count.min(Config::MOST_DISPARITIES)])
 }

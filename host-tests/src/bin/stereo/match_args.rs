@@ -23,8 +23,8 @@ pub struct MatchArgs {
     #[command(flatten)]
     pub balance: BalanceArgs,
     /// Calibration of the pair, for depths: a Middlebury or KITTI calib.txt, what OpenCV or ROS (twice) say
-    /// of rectified images, or rectified.json; with --rectify how the cameras are mounted, as for the
-    /// command rectify
+    /// of rectified images, or rectified.json (which has masks alone where matches made it); with --rectify
+    /// how the cameras are mounted, as for the command rectify
     #[arg(long, value_name = "FILE")]
     pub calib: Vec<PathBuf>,
     /// Take the images raw, as the cameras give them, and rectify them line by line before they are matched

@@ -22,7 +22,7 @@ use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
-use stereopsis_host::rectify::{RectifyPicturesError, rectify};
+use stereopsis_host::rectify::{RectifiedPictures, RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
 use summary::{beside, summary};
 
@@ -133,7 +133,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
         && !args.force
     {
-        refuse_swapped([&left, &right])?;
+        refuse_swapped([&left, &right], || exchanged(&sequence, cameras.rectification.as_ref()?))?;
     }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
@@ -214,6 +214,12 @@ fn cameras(args: &OdometryArgs, sequence: &Sequence) -> Result<Cams, Failure> {
             Ok(Cams { rig: Rig::Stereo(calibration.rig), rectification: None, format: calibration.format })
         }
     }
+}
+
+/// The first frame as it would be if the cameras were exchanged.
+fn exchanged(sequence: &Sequence, rectification: &Rectification<f64>) -> Option<RectifiedPictures> {
+    let (left, right) = sequence.frame(0).ok()?;
+    rectify(rectification, SceneCamera::new(right?, left)).ok()
 }
 
 /// A frame, its rows aligned.

@@ -4,26 +4,31 @@ mod summary;
 mod watching;
 
 use crate::failure::Failure;
-use crate::input;
-use crate::look::refuse_swapped;
+use crate::look::{self, Look, SearchArgs};
 use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::shared::{BalanceArgs, MethodArgs, RangeArgs, Unit, filter, method, noise, print, rate};
+use crate::scale::camera;
+use crate::shared::{BalanceArgs, MethodArgs, Unit, filter, method, noise, print, rate};
 use crate::typed_rig::TypedRig;
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
+use image::GrayImage;
 use std::fmt::Display;
 use std::fs;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
 use stereopsis_host::colour::flags_raw;
-use stereopsis_host::command_line::one_line;
+use stereopsis_host::command_line::{one_line, words};
 use stereopsis_host::output::Staging;
+use stereopsis_host::pair::PairMatches;
 use stereopsis_host::pfm;
-use stereopsis_host::recording::{Ahead, FromStart, Header, Pictures, Playback, Recording, Seen, first_pair};
+use stereopsis_host::recording::{
+    Ahead, FromStart, Header, Pictures, Playback, Recording, Seen, first_pairs,
+};
+use stereopsis_host::rows::Rows;
 use stereopsis_host::run::{GuardedFrame, MethodName, NoiseChoice, run_guarded};
 use summary::Summary;
 
@@ -45,7 +50,7 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "FILE|DIR")]
     pub from: PathBuf,
     #[command(flatten)]
-    pub range: RangeArgs,
+    pub search: SearchArgs,
     /// fast, block, sgm-lean, sgm or sgm-edge
     #[arg(long, value_name = "METHOD", default_value = "sgm", value_parser = method)]
     pub method: MethodName,
@@ -70,9 +75,6 @@ pub struct ReplayArgs {
     /// How many frames are played; by default all
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: Option<u32>,
-    /// Play the frames even if the cameras seem to be swapped
-    #[arg(long)]
-    pub force: bool,
     #[command(flatten)]
     pub watch: ObstacleArgs,
     /// Calibration of the cameras, for --obstacles, as for the command match
@@ -83,6 +85,12 @@ pub struct ReplayArgs {
     pub unit: Option<Unit>,
     #[command(flatten)]
     pub typed: TypedRig,
+    /// Print summary.json in place of the figures
+    #[arg(long, conflicts_with = "quiet")]
+    pub json: bool,
+    /// Print no figures; warnings are on standard error
+    #[arg(long)]
+    pub quiet: bool,
     /// Folder for the results; made when it is missing
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
@@ -100,15 +108,17 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let recording = if args.from.is_dir() { of_folder(args)? } else { Recording::open(&args.from)? };
     let header = recording.header();
     let seen = if args.watch.obstacles { Seen::with_pictures() } else { Seen::default() };
-    let config = config(args, header)?;
+    check_width(args, header)?;
     let watch = watching::watch(args, header)?;
-    let (pair, records) = first_pair(recording);
-    if let Some([left, right]) = pair.filter(|_| !args.force) {
-        refuse_swapped([&left, &right])?;
-    }
+    let (pairs, records) = first_pairs(recording, LOOKED_AT);
+    let scale = watch.as_ref().map(|(_, scale)| scale);
+    let look = look(args, header, pairs, scale)?;
     let ahead = Ahead::new(records, header, args.balance.is_for(args.method), &seen);
-    play(args, config, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen, watch)
+    play(args, look, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen, watch)
 }
+
+/// How many frames are looked at before the first is played: a camera may begin in the dark.
+const LOOKED_AT: usize = 8;
 
 /// A folder's pictures, with those of each side in a folder.
 fn of_folder(args: &ReplayArgs) -> Result<Recording, Failure> {
@@ -133,15 +143,22 @@ fn recorded(pictures: &mut Pictures) -> Result<Recording, Failure> {
     Ok(Recording::read(Path::new("the folder"), Box::new(io::Cursor::new(bytes)))?)
 }
 
-/// The search in frames without noise.
-fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
-    if header.width < Config::FEWEST_DISPARITIES {
-        let (from, least) = (args.from.display(), Config::FEWEST_DISPARITIES);
-        return Err(Failure::new(format!(
-            "{from}: lines of {} pixels; at least {least} are needed",
-            header.width
-        )));
+fn check_width(args: &ReplayArgs, header: Header) -> Result<(), Failure> {
+    let (width, least) = (header.width, Config::FEWEST_DISPARITIES);
+    if width >= least {
+        return Ok(());
     }
+    let from = args.from.display();
+    Err(Failure::new(format!("{from}: lines of {width} pixels; at least {least} are needed")))
+}
+
+/// The search in frames without noise, and what is seen of the pair that has the most features of those.
+fn look(
+    args: &ReplayArgs,
+    Header { width, height, .. }: Header,
+    pairs: Vec<[GrayImage; 2]>,
+    scale: Option<&DepthScale>,
+) -> Result<Look, Failure> {
     let options = MethodArgs {
         method: args.method,
         filter: args.filter,
@@ -150,14 +167,20 @@ fn config(args: &ReplayArgs, header: Header) -> Result<Config, Failure> {
         kernel: None,
         threads: 1,
     };
-    let config = input::config(&args.range, &options, header.width, header.height)?;
+    args.search.check(&options, width, height)?;
+    let features =
+        |pair: &[GrayImage; 2]| PairMatches::find(pair.each_ref(), None).map_or(0, |found| found.count());
+    let black = [(); 2].map(|()| GrayImage::new(width.into(), height.into()));
+    let pair = pairs.into_iter().max_by_key(features).unwrap_or(black);
+    let camera = scale.and_then(|scale| camera(scale.rig()));
+    let look = look::look(&args.search, &options, pair.each_ref(), None, camera.as_ref(), || None)?;
     // In the sky obstacles are asked to be sure.
-    Ok(Config { confidence: args.watch.obstacles, ..config })
+    Ok(Look { config: Config { confidence: args.watch.obstacles, ..look.config }, ..look })
 }
 
 fn play(
     args: &ReplayArgs,
-    config: Config,
+    Look { config, check, rows }: Look,
     source: &mut Playback<Ahead<'_, FromStart>>,
     seen: &Seen,
     mut watch: Option<(Watch, DepthScale)>,
@@ -203,7 +226,11 @@ fn play(
     if let Some(e) = source.failed() {
         return Err(e.into());
     }
+    let pair = check.map(|check| check.with_warning(rows.as_ref().and_then(Rows::warning)));
     let summary = Summary {
+        version: env!("CARGO_PKG_VERSION"),
+        command: words(),
+        inputs: [&args.from].into_iter().chain(&args.calib).map(|path| path.display().to_string()).collect(),
         width: config.width,
         height: config.height,
         method: args.method.name(),
@@ -219,6 +246,8 @@ fn play(
         recording_was_cut: source.was_cut(),
         time_went_back_at: source.went_back(),
         counters: counters.into(),
+        rows,
+        pair,
     };
     if let Some((watch, _)) = &watch {
         watch.write(&mut staging)?;
@@ -227,6 +256,16 @@ fn play(
     staging.write("summary.json", |out| json(out, &summary))?;
     let stale = earlier_results(&args.out)?;
     staging.commit(&stale.iter().map(String::as_str).chain(OVER_TIME).collect::<Vec<_>>())?;
+    for warning in summary.pair.iter().flat_map(|pair| &pair.warnings) {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(io::stderr(), "stereo: warning: {warning}");
+    }
+    if args.quiet {
+        return Ok(());
+    }
+    if args.json {
+        return print(&(serde_json::to_string_pretty(&summary)? + "\n"));
+    }
     let decisions = watch.map(|(watch, _)| format!("obstacles: {}\n", watch.timeline.line()));
     print(&(decisions.unwrap_or_default() + &summary.figures(&args.out)))
 }

@@ -129,6 +129,9 @@ pub fn figures(summary: &Summary) -> String {
         Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
         None => writeln!(text, "noise        {}, as told", s.noise),
     };
+    if let Some(pair) = &s.pair {
+        let _ = writeln!(text, "images       {}", pair.lacks());
+    }
     if let Some(rows) = &s.rows {
         let _ = writeln!(text, "rows         {}", rows.summary());
     }

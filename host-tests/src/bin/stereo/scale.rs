@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::input::Pair;
 use crate::match_args::MatchArgs;
 use crate::shared::Unit;
+use crate::uncalibrated::is_uncalibrated;
 use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
@@ -15,7 +16,8 @@ pub fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
     Camera::new(f, f, cx.into(), cy.into()).ok()
 }
 
-/// The scale of depths in images that are rectified already, where there is a calibration.
+/// The scale of depths in images that are rectified already, where there is a calibration. Of matches alone
+/// there is none.
 pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failure> {
     if args.options.alpha.is_some() {
         return Err(Failure::usage("--alpha: is for raw images; give --rectify too"));
@@ -32,6 +34,17 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
             return Err(Failure::usage("--unit: is that of --calib, which is missing"));
         }
         0 => return Ok(None),
+        1 if is_uncalibrated(&args.calib[0]) => {
+            let is_of_depths = args.depth.depth_unit.is_some() || args.depth.max_depth.is_some();
+            return if is_of_depths || args.watch.obstacles {
+                let path = args.calib[0].display();
+                Err(Failure::new(format!(
+                    "{path}: is of matches alone and knows no depths; give a calibration"
+                )))
+            } else {
+                Ok(None)
+            };
+        }
         1 | 2 => {}
         _ => {
             return Err(Failure::usage(

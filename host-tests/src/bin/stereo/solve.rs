@@ -23,6 +23,7 @@ use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
+use stereopsis_host::scene::SceneCamera;
 
 /// What a folder that is finished says of its images and settings, of which there are many.
 pub const FINISHED: &str = "finished.json";
@@ -55,13 +56,16 @@ pub fn solve(
         raw(args, &mut pair)?
     } else {
         let scale = scale(args, &pair)?;
+        if let Some(calib) = args.calib.first().filter(|_| scale.is_none()) {
+            pair.notes.push(format!("{}: is of matches alone: nothing is in metres", calib.display()));
+        }
         Staging::probe(&args.out)?;
         let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
         let masks = args.masks.read(&args.calib, left.dimensions())?;
         let valid = masks.as_ref().map(|masks| masks.each_ref());
         let Look { config, check, rows } =
-            look(&args.search, &args.method, [&left, &right], valid, camera.as_ref())?;
+            look(&args.search, &args.method, [&left, &right], valid, camera.as_ref(), || None)?;
         let matched = match masks {
             Some(masks) => {
                 matched(&args.method, &args.balance, config, &mut MaskedPair::new(&mut pair.camera, masks))?
@@ -82,11 +86,11 @@ pub fn solve(
     let Matched { config, meter, balance, outcome } = matched;
     let scale = scene.scale.as_ref();
     let summary = Summary::new(args.method.method, args.method.filter.name(), &config, &outcome, scale, None);
-    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_rows(scene.rows);
+    let summary = summary.with_noise(meter.as_ref()).with_balance(balance).with_pair(scene.check, scene.rows);
     let masks = if args.rectify { None } else { args.masks.files(&args.calib) };
     let inputs = pair.inputs.iter().chain(&args.calib);
     let inputs = inputs.chain(masks.iter().flatten()).map(PathBuf::as_path);
-    let mut summary = summary.with_pair(scene.check.clone()).with_inputs(inputs);
+    let mut summary = summary.with_inputs(inputs);
     let depth = scale.map(|s| DepthFiles::new(&args.depth, &outcome.map, s, &scene.left, &mut summary));
     let report = Report {
         left_name: &pair.names[0],
@@ -117,14 +121,8 @@ pub fn solve(
     let stale: Vec<_> = stale.collect();
     staging.commit(&stale)?;
 
-    let warnings = [
-        scene.check.as_ref().and_then(|check| check.fault).map(|fault| fault.to_string()),
-        scene.check.as_ref().and_then(|check| check.search_warning(&config)),
-        scene.rows.as_ref().and_then(Rows::warning),
-        summary.few_answers(),
-    ];
     let notes = pair.notes.iter().map(|note| format!("note: {}", one_line(note)));
-    let warnings = warnings.into_iter().flatten().map(|warning| format!("warning: {warning}"));
+    let warnings = summary.warnings().iter().map(|warning| format!("warning: {warning}"));
     for line in notes.chain(warnings) {
         // Nobody is left to tell when standard error is closed.
         let _ = writeln!(std::io::stderr(), "stereo: {label}{line}");
@@ -159,8 +157,13 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
-    let seen = look(&args.search, &args.method, grey.pictures.each_ref(), Some(valid), Some(camera))?;
-    let Look { config, check, rows: aligned } = seen;
+    let exchanged = || {
+        let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
+        rectify(&rectification, SceneCamera::new(right, left)).ok()
+    };
+    let pictures = grey.pictures.each_ref();
+    let Look { config, check, rows: aligned } =
+        look(&args.search, &args.method, pictures, Some(valid), Some(camera), exchanged)?;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
         (
             source.remaps().map(|remap| remap.table().rows()),

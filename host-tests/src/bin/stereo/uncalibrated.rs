@@ -7,6 +7,7 @@ use crate::shared::{print, rows};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::Point2;
 use serde::Serialize;
+use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
 use stereopsis::geometry::{
@@ -16,6 +17,7 @@ use stereopsis::geometry::{
     two_view::{Correspondence, Homography},
 };
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::limits;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::output::Staging;
 
@@ -118,6 +120,13 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
         writeln!(text, "disparity    {:.1} to {:.1} px of these matches", disparity_px[0], disparity_px[1]);
     let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
     print(&text)
+}
+
+/// Whether a file is the `rectified.json` of a pair that matches alone have aligned.
+pub fn is_uncalibrated(path: &Path) -> bool {
+    let text = limits::read(path, limits::CALIBRATION_BYTES).unwrap_or_default();
+    serde_json::from_slice::<Value>(&text)
+        .is_ok_and(|found| found["calibration"].is_null() && found["homographies"].is_array())
 }
 
 /// How far rows of matches are apart, the root mean square, and their least and largest disparity; px.

@@ -10,7 +10,7 @@ use std::sync::mpsc::{Receiver, channel, sync_channel};
 use std::thread;
 use stereopsis::matching::{Config, Method};
 use stereopsis::pipeline::{FaultCounters, Guarded};
-use stereopsis_host::recording::{Ahead, Playback, Recording, Seen, first_pair, record};
+use stereopsis_host::recording::{Ahead, Playback, Recording, Seen, first_pairs, record};
 use stereopsis_host::run::{GuardedFrame, MethodName, run_guarded};
 
 /// Frames that wait to be compared: a recording has no end, and memory has.
@@ -71,7 +71,7 @@ fn play<S: Method>(
 ) -> Result<FaultCounters, String> {
     let method: MethodName = S::NAME.parse().map_err(|_| format!("{} is no method", S::NAME))?;
     let (header, seen) = (recording.header(), Seen::default());
-    let (_, records) = first_pair(recording);
+    let (_, records) = first_pairs(recording, 1);
     let mut source = Playback::new(Ahead::new(records, header, false, &seen), header, false);
     let next = |source: &mut Playback<_>| source.has_frame().then_some(*config);
     let counters = run_guarded(method, config, None, &mut source, next, keep).map_err(|e| e.to_string())?;

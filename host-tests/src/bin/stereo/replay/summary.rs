@@ -6,10 +6,18 @@ use std::path::Path;
 use stereopsis::pipeline::FaultCounters;
 use stereopsis::units::PixelFlags;
 use stereopsis_host::command_line::one_line;
+use stereopsis_host::pair::PairCheck;
+use stereopsis_host::rows::Rows;
 
 /// The replay in figures.
 #[derive(Serialize)]
 pub struct Summary {
+    /// The program's version.
+    pub version: &'static str,
+    /// The command line, word by word.
+    pub command: Vec<String>,
+    /// What was read: the recording, then the calibration's files.
+    pub inputs: Vec<String>,
     pub width: u16,
     pub height: u16,
     pub method: &'static str,
@@ -28,6 +36,10 @@ pub struct Summary {
     /// The first frame, from 1, whose time stamp is of before that of the frame before.
     pub time_went_back_at: Option<u32>,
     pub counters: Counters,
+    /// How well the images' rows agree; absent when too few features match.
+    pub rows: Option<Rows>,
+    /// What features say of the pair and of the search, by the frame of the first ones that has the most.
+    pub pair: Option<PairCheck>,
 }
 
 /// [`FaultCounters`], by name.

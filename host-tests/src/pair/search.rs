@@ -1,0 +1,57 @@
+//! The search that holds what a pair shows.
+
+use super::matches::{FEWEST, PairMatches};
+use crate::map::{DisparityMap, quantile};
+use crate::run::{MemoryPair, MethodName, run};
+use image::{GrayImage, imageops};
+use stereopsis::matching::{Config, Filter};
+
+/// Width up to which pictures are made smaller to find their range, px.
+const SMALL: u32 = 320;
+
+/// A search that holds what a pair shows: the smallest disparity and how many. It is that of the matches and
+/// of a smaller copy of the pair, matched over its whole width, with a margin. `None` where neither has
+/// answers.
+pub fn search(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<[u16; 2]> {
+    let width = u16::try_from(pictures[0].width()).ok()?;
+    let of_matches = matches.disparities_px();
+    let range = |sorted: &[f64], ends: [f64; 2]| {
+        let at = |share: f64| sorted.get((share * (sorted.len() - 1) as f64).round() as usize).copied();
+        if sorted.len() < FEWEST { None } else { Some([at(ends[0])?, at(ends[1])?]) }
+    };
+    let ranges = [range(&of_matches, [0.02, 0.98]), small_range(pictures)];
+    let all = || ranges.iter().flatten();
+    let first = all().map(|r| r[0]).min_by(f64::total_cmp)?;
+    let last = all().map(|r| r[1]).max_by(f64::total_cmp)?;
+    let more = 4.0 + (last - first) / 8.0;
+    // From 0 on where that costs little: what is far has few features.
+    let first = if first - more < 32.0 { 0.0 } else { (first - more).floor() };
+    let count = ((last + more - first).max(1.0) as u16).next_multiple_of(16);
+    let most = Config::MOST_DISPARITIES.min(width.saturating_sub(first as u16)) & !15;
+    Some([first as u16, count.clamp(Config::FEWEST_DISPARITIES, most.max(Config::FEWEST_DISPARITIES))])
+}
+
+/// The range of the disparities in a smaller copy of a pair, in pixels of the pair.
+fn small_range(pictures: [&GrayImage; 2]) -> Option<[f64; 2]> {
+    let (map, by) = small_map(pictures)?;
+    let (found, by) = (map.sorted(), f64::from(by));
+    (found.len() >= 16 * FEWEST).then(|| {
+        Some([by * f64::from(quantile(&found, 0.001)?), by * (f64::from(quantile(&found, 0.999)?) + 1.0)])
+    })?
+}
+
+/// The answers of a smaller copy of a pair that is searched over its whole width, and how many times smaller
+/// it is.
+pub(super) fn small_map(pictures: [&GrayImage; 2]) -> Option<(DisparityMap, u32)> {
+    let (width, height) = pictures[0].dimensions();
+    let by = width.div_ceil(SMALL);
+    let small = |picture: &GrayImage| imageops::thumbnail(picture, width / by, (height / by).max(1));
+    let [left, right] = pictures.map(small);
+    // Images have at most 4096 columns and rows.
+    let (width, height) = (left.width() as u16, left.height() as u16);
+    let disparities = Config::MOST_DISPARITIES.min(width) & !15;
+    let config =
+        MethodName::Block.with_filter(Filter::Strict, MethodName::Block.config(width, height, disparities));
+    let mut pair = MemoryPair::new(width, left.into_raw(), right.into_raw())?;
+    Some((run(MethodName::Block, &config, &mut pair, |_| ()).ok()?.map, by))
+}

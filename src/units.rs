@@ -105,9 +105,11 @@ impl PixelFlags {
     /// The winner is the largest disparity searched, or its partner is the first column of the right image:
     /// the surface may be nearer, or the right camera may not see it.
     pub const CEILING: Self = Self(1 << 1);
-    /// The winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
+    /// The winner costs as much as both its neighbours, too few pixels of the window have a gradient, or the
+    /// answer had spread from an edge over a place without any.
     pub const UNTEXTURED: Self = Self(1 << 2);
-    /// Another disparity matches nearly as well, or the answer was less sure than asked for.
+    /// Another disparity matches nearly as well, the answer was less sure than asked for, or it stood on a
+    /// pattern that repeats.
     pub const AMBIGUOUS: Self = Self(1 << 3);
     /// The right image's pixel found a better partner elsewhere: occluded or mismatched.
     pub const MISMATCH: Self = Self(1 << 4);

@@ -14,7 +14,7 @@ pub const STEREOPSIS_CAMERA_GOOD: u8 = 0;
 pub const STEREOPSIS_CAMERA_BLACK: u8 = 1;
 /// Camera: at least half of the pixels are saturated.
 pub const STEREOPSIS_CAMERA_SATURATED: u8 = 2;
-/// Camera: all pixels are within 16 levels, as from a stuck port.
+/// Camera: all pixels are in one of the 16 bins of 16 levels, as from a stuck port.
 pub const STEREOPSIS_CAMERA_FLAT: u8 = 3;
 /// Camera: at least half of the lines equal the one above bit for bit: a hanging line or a test pattern.
 pub const STEREOPSIS_CAMERA_REPEATING: u8 = 4;

@@ -13,9 +13,11 @@ pub const STEREOPSIS_FLAG_OUTSIDE: u8 = 1;
 /// Flag: the winner is the largest disparity searched, or its partner is the first column of the right image;
 /// the surface may be nearer, or the right camera may not see it.
 pub const STEREOPSIS_FLAG_CEILING: u8 = 2;
-/// Flag: the winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
+/// Flag: the winner costs as much as both its neighbours, too few pixels of the window have a gradient, or
+/// the answer had spread from an edge over a place without any.
 pub const STEREOPSIS_FLAG_UNTEXTURED: u8 = 4;
-/// Flag: another disparity matches nearly as well.
+/// Flag: another disparity matches nearly as well, the answer was less sure than asked for, or it stood on a
+/// pattern that repeats.
 pub const STEREOPSIS_FLAG_AMBIGUOUS: u8 = 8;
 /// Flag: the right image's pixel has a better partner elsewhere.
 pub const STEREOPSIS_FLAG_MISMATCH: u8 = 16;

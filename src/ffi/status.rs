@@ -6,7 +6,7 @@ use crate::pipeline::PushError;
 /// Version of this interface, which changes when a program compiled with another header would go wrong.
 pub const STEREOPSIS_ABI: u32 = 7;
 
-/// Result of a call; below 0 it is an error, and nothing has changed.
+/// Result of a call; below 0 it is an error, and nothing has changed unless the function says so.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(i32)]
 #[non_exhaustive]

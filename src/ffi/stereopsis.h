@@ -2,7 +2,7 @@
 
    The caller gives memory, a configuration and lines, and gets rows of disparities. Nothing is allocated, nothing is
    kept of a caller's pointer but the memory given to stereopsis_init. Every function answers with a status; below 0 it
-   is an error and nothing has changed.
+   is an error and nothing has changed unless the function says so.
 
      static uint64_t memory[STEREOPSIS_BLOCK_BYTES(320, 64) / 8 + 1];
      stereopsis *matcher;
@@ -186,12 +186,14 @@
 #define STEREOPSIS_FLAG_CEILING 2
 
 /**
- * Flag: the winner costs as much as both its neighbours, or too few pixels of the window have a gradient.
+ * Flag: the winner costs as much as both its neighbours, too few pixels of the window have a gradient, or
+ * the answer had spread from an edge over a place without any.
  */
 #define STEREOPSIS_FLAG_UNTEXTURED 4
 
 /**
- * Flag: another disparity matches nearly as well.
+ * Flag: another disparity matches nearly as well, the answer was less sure than asked for, or it stood on a
+ * pattern that repeats.
  */
 #define STEREOPSIS_FLAG_AMBIGUOUS 8
 
@@ -353,7 +355,7 @@
 #define STEREOPSIS_CAMERA_SATURATED 2
 
 /**
- * Camera: all pixels are within 16 levels, as from a stuck port.
+ * Camera: all pixels are in one of the 16 bins of 16 levels, as from a stuck port.
  */
 #define STEREOPSIS_CAMERA_FLAT 3
 
@@ -493,7 +495,7 @@
 #define STEREOPSIS_FREE_SPACE_BYTES 1024
 
 /**
- * Result of a call; below 0 it is an error, and nothing has changed.
+ * Result of a call; below 0 it is an error, and nothing has changed unless the function says so.
  */
 #if defined(__cplusplus) ? __cplusplus >= 201103L : __STDC_VERSION__ >= 202311L
 enum stereopsis_status : int32_t

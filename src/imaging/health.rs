@@ -14,7 +14,7 @@ pub enum CameraHealth {
     Black,
     /// At least half of the pixels are saturated.
     Saturated,
-    /// All pixels are within 16 levels, as from a stuck port.
+    /// All pixels are in one of the 16 bins of 16 levels, as from a stuck port.
     Flat,
     /// At least half of the lines equal the one above bit for bit: a hanging line or a test pattern.
     Repeating,

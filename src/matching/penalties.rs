@@ -48,19 +48,7 @@ impl Penalties {
         Self { gradient: 7, cost: 16, step: [18, 9], jump: [88, 28, 16], edges: [6, 12] };
 
     /// Penalties for smoothed lines, whose gradients may be larger before they are cut off.
-    ///
-    /// What [`Sgm`](super::Sgm) misses on 15 real pairs with noise of 2 and of 5 grey levels, and how many of
-    /// its answers are wrong, percent (`cargo xtask altered` measures any others):
-    ///
-    /// | penalties | sigma 2 | sigma 5 |
-    /// | --- | ---: | ---: |
-    /// | as without noise | 8.24, 4.97 | 15.48, 8.67 |
-    /// | gradient 9 | 8.19, 4.96 | 15.40, 8.62 |
-    /// | gradient 11 | 8.15, 4.93 | 15.42, 8.65 |
-    /// | gradient 9, edges 5 and 10 | 8.14, 4.90 | 15.86, 8.07 |
-    /// | gradient 9, edges 4 and 8 | 8.09, 4.82 | 17.34, 6.95 |
-    /// | gradient 9, edges 8 and 16 | 8.36, 5.12 | 15.49, 8.92 |
-    /// | gradient 9, cost 12 | 8.43, 5.21 | 15.65, 8.77 |
+    /// `cargo xtask altered` measures them, and any others.
     pub(super) const fn in_noise(self) -> Self {
         Self { gradient: 9, ..self }
     }

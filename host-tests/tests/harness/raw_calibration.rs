@@ -145,6 +145,9 @@ fn a_camera_info_for_each_camera() {
         let (r, _) = found.rig.pose().to_opencv();
         assert!((r - Matrix3::new(0.8, 0.6, 0.0, -0.6, 0.8, 0.0, 0.0, 0.0, 1.0)).amax() < 1e-12, "{r}");
     }
+    let narrow = right.replace("image_width: 640", "image_width: 320");
+    let error = open(&[&left, &narrow], 1.0).expect_err("two sizes");
+    assert!(error.contains("640 x 480 of one camera, 320 x 480 of the other"), "{error}");
     let error = open(&[&left], 1.0).expect_err("one camera");
     assert!(error.contains("--calib a second time"), "{error}");
 }

@@ -20,6 +20,8 @@ pub struct RemapPair<const W: usize, const N: usize, const SLOTS: usize> {
     valid: [[u8; W]; 2],
     /// Whether other lines stand for the raw ones that are held, by their row's remainder.
     replaced: [bool; N],
+    /// Whether there are any of those in the frame.
+    has_replaced: bool,
 }
 
 impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> {
@@ -30,7 +32,7 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
 
     /// Joins the remaps of the left and the right camera.
     pub const fn new(left: Remap<W, N, SLOTS>, right: Remap<W, N, SLOTS>) -> Self {
-        Self { left, right, valid: [[0; W]; 2], replaced: [false; N] }
+        Self { left, right, valid: [[0; W]; 2], replaced: [false; N], has_replaced: false }
     }
 
     /// Sets the warps of a rectification in place.
@@ -71,6 +73,8 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
 
     /// Begins a frame.
     pub fn begin(&mut self) {
+        self.has_replaced = false;
+        self.replaced = [false; N];
         self.left.begin();
         self.right.begin();
     }
@@ -108,9 +112,12 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
     }
 
     fn take(&mut self, is_replaced: bool) {
-        let slot = usize::from(self.came()) % N;
-        if let Some(replaced) = self.replaced.get_mut(slot) {
-            *replaced = is_replaced;
+        self.has_replaced |= is_replaced;
+        if self.has_replaced {
+            let slot = usize::from(self.came()) % N;
+            if let Some(replaced) = self.replaced.get_mut(slot) {
+                *replaced = is_replaced;
+            }
         }
         self.left.accept();
         self.right.accept();
@@ -123,6 +130,9 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
 
     /// Returns whether the next rectified lines need a raw line that was lost.
     pub fn is_damaged(&self) -> bool {
+        if !self.has_replaced {
+            return false;
+        }
         let was_replaced = |row| self.replaced.get(usize::from(row) % N).is_some_and(|replaced| *replaced);
         let needs = [self.left.needs(), self.right.needs()];
         needs.into_iter().flatten().any(|(first, last)| (first..=last).any(was_replaced))

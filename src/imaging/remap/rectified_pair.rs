@@ -105,6 +105,10 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
         self.source
     }
 
+    fn raw_height(&self) -> u16 {
+        self.pair.remaps()[0].table().raw_size().height
+    }
+
     /// Takes the next raw lines of each camera, their own or others in their place; or none, where they came
     /// before.
     fn read(&mut self) -> Result<(), CameraError<RectifiedPairError<S::Error>>> {
@@ -123,7 +127,7 @@ impl<'a, S: StereoSource, const W: usize, const N: usize, const SLOTS: usize>
             }
             Err(error) => return Err(error.map_hardware(RectifiedPairError::Source)),
         };
-        if line.row < self.last.row || line.row >= self.source.format().height {
+        if line.row < self.last.row || line.row >= self.raw_height() {
             return Err(CameraError::LostSync);
         }
         self.last.row = line.row;
@@ -190,13 +194,10 @@ impl<S: StereoSource, const W: usize, const N: usize, const SLOTS: usize> Stereo
         right: &mut [u8],
     ) -> Result<LineStart, CameraError<Self::Error>> {
         // A source may give lines again and again: a frame's worth of that is enough.
-        for _ in 0..2 * u32::from(self.source.format().height) {
-            if self.pair.wants_lines() {
-                self.read()?;
-            }
-        }
-        if self.pair.wants_lines() {
-            return Err(CameraError::LostSync);
+        let mut reads = 2 * u32::from(self.raw_height());
+        while self.pair.wants_lines() {
+            reads = reads.checked_sub(1).ok_or(CameraError::LostSync)?;
+            self.read()?;
         }
         if self.pair.is_damaged() {
             self.pair.skip();

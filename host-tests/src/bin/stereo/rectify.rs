@@ -8,8 +8,10 @@ use crate::shared::{PairArgs, RectifyOptions, print};
 use crate::uncalibrated;
 use clap::Args;
 use std::fmt::Write;
+use std::io::{self, Write as _};
 use std::path::PathBuf;
 use stereopsis::geometry::camera::ImageSize;
+use stereopsis_host::calibration::warnings;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::output::Staging;
 use stereopsis_host::rectify::rectify;
@@ -72,6 +74,10 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     staging.write(CAMERAS, |out| json(out, &summary))?;
     staging.commit(&[])?;
 
+    for warning in warnings(&calibration.rig, &rectification) {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(io::stderr(), "stereo: warning: {warning}");
+    }
     let mut text = String::new();
     for note in &pair.notes {
         let _ = writeln!(text, "note: {}", one_line(note));

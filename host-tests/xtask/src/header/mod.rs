@@ -118,7 +118,7 @@ const TOP: &str = "/* Depth from two cameras, line by line: the functions of lib
                    nothing is
    kept of a caller's pointer but the memory given to stereopsis_init. Every function answers with a status; \
                    below 0 it
-   is an error and nothing has changed.
+   is an error and nothing has changed unless the function says so.
 
      static uint64_t memory[STEREOPSIS_BLOCK_BYTES(320, 64) / 8 + 1];
      stereopsis *matcher;

@@ -28,13 +28,12 @@ pub(in crate::calibration) fn read(
         && ros::is_one(one)
         && ros::is_one(two)
     {
-        return projections(
-            "ROS",
-            ["projection_matrix"; 2],
-            [ros::projection(one)?, ros::projection(two)?],
-            1.0,
-        )
-        .map(Some);
+        let both = [ros::projection(one)?, ros::projection(two)?];
+        let found = projections("ROS", ["projection_matrix"; 2], both, 1.0)?;
+        // Sides of at most 65535 px.
+        let [width, height] =
+            [0, 1].map(|side| ros::image_size([one, two]).map(|s| s.map(|s| s[side] as u16)));
+        return Ok(Some(Calibration { width: width?, height: height?, ..found }));
     }
     if let Some(tree) = trees.iter().find(|tree| tree.get("focal_px").is_some() && tree.get("q").is_some()) {
         return of_q("rectified.json", "q", tree, 1.0).map(Some);

@@ -24,7 +24,7 @@ pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
     let turns = [rotation(first)?, rotation(second)?];
     let r = turns[1].transpose() * turns[0];
     let t = turns[1].transpose() * (other - shift);
-    let [w, h] = ["image_width", "image_height"].map(|key| first.get(key).cloned().unwrap_or_default());
+    let size = image_size([first, second])?;
     Ok(Found {
         format: "ROS",
         cameras: [one("the first camera", first)?, one("the second camera", second)?],
@@ -33,12 +33,27 @@ pub(super) fn read(first: &Tree, second: &Tree) -> Result<Found, Fault> {
             r.transpose().as_slice().try_into().unwrap_or([0.0; 9]),
             t.into(),
         )?,
-        size: first
-            .get("image_width")
-            .map(|_| size("image_width and image_height", &json!([w, h])))
-            .transpose()?,
+        size,
         baseline_key: "projection_matrix",
     })
+}
+
+/// The size of the images, which is one for both cameras, where it is told.
+pub(super) fn image_size(trees: [&Tree; 2]) -> Result<Option<[u64; 2]>, Fault> {
+    const KEYS: &str = "image_width and image_height";
+    let told = |tree: &Tree| {
+        let sides = tree.get("image_width").zip(tree.get("image_height"));
+        sides.map(|(w, h)| size(KEYS, &json!([w, h]))).transpose()
+    };
+    match [told(trees[0])?, told(trees[1])?] {
+        [Some(one), Some(two)] if one != two => {
+            let ([w, h], [w2, h2]) = (one, two);
+            let problem =
+                format!("{w} x {h} of one camera, {w2} x {h2} of the other; give those of one size");
+            Err(Fault::Key { key: KEYS.into(), problem })
+        }
+        [one, two] => Ok(one.or(two)),
+    }
 }
 
 pub(super) fn projection(tree: &Tree) -> Result<[f64; 12], Fault> {

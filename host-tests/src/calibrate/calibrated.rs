@@ -84,6 +84,17 @@ pub enum SolveError {
          them"
     )]
     Camera(&'static str),
+    /// The two pictures of too many views are not of one moment.
+    #[error(
+        "each camera by itself fits {alone_px:.2} px, and both together {together_px:.1} px: the images of \
+         too many pairs are not of one moment; are both lists in the same order, without gaps?"
+    )]
+    NotPaired {
+        /// The re-projection error of the worse camera by itself, px.
+        alone_px: f64,
+        /// That of both together.
+        together_px: f64,
+    },
     /// The result is no rig.
     #[error("{0}")]
     Rig(StereoRigError),

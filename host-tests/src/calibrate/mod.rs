@@ -19,6 +19,7 @@ mod calibrated;
 pub mod coverage;
 mod lens;
 mod normal;
+mod paired;
 pub mod report;
 pub mod scene;
 mod solve;
@@ -26,4 +27,5 @@ mod start;
 
 pub use calibrated::{Calibrated, SolveError, View, ViewFigures};
 pub use lens::LensModel;
+pub use paired::solve_paired;
 pub use solve::solve;

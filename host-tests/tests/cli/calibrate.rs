@@ -29,7 +29,7 @@ fn rig() -> StereoRig<f64> {
 }
 
 /// Pairs of a board with squares of 30 mm, `left1.png` to `right5.png`, and one with nothing to see.
-fn pictures(bench: &Bench) {
+pub fn pictures(bench: &Bench) {
     let (pattern, mut random) = (Pattern::new(6, 5).expect("a pattern"), Random::new(7));
     let cameras = BoardCamera::pair(&rig());
     let middle = Vector3::new(2.5, 2.0, 0.0);
@@ -51,7 +51,7 @@ fn pictures(bench: &Bench) {
     }
 }
 
-fn arguments(bench: &Bench, change: &[(&str, &str)]) -> Vec<String> {
+pub fn arguments(bench: &Bench, change: &[(&str, &str)]) -> Vec<String> {
     let file = |name: &str| bench.path(name).display().to_string();
     let mut options = std::collections::BTreeMap::from([
         ("--left", file("left?.png")),

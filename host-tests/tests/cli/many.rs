@@ -74,7 +74,7 @@ fn patterns_and_folders_are_many_pairs_in_the_order_of_their_numbers() {
         assert!(disparities("000001") == alone && disparities("000003") == alone);
         assert!(disparities("000002") != alone);
         let table = fs::read_to_string(bench.path(out).join("frames.csv")).expect("a table");
-        assert_eq!(table.lines().next(), Some("frame,input,density,median_px,time_ms,state_bytes"));
+        assert_eq!(table.lines().next(), Some("frame,input,density,median_px,time_ms,state_bytes,fault"));
         assert_eq!(table.lines().count(), 4, "{table}");
         assert!(text(&run.stdout).contains("000003"), "{}", text(&run.stdout));
     }

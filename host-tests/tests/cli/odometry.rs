@@ -6,7 +6,7 @@ use std::collections::HashMap;
 use std::fs;
 use std::path::Path;
 
-fn walk(bench: &Bench, frames: &str) -> String {
+pub fn walk(bench: &Bench, frames: &str) -> String {
     let street = bench.path("street").display().to_string();
     let run = stereo(["walk", "--out", &street, "--frames", frames, "--width", "200"]);
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use stereopsis::geometry::rectify::{Crop, Rectification};
 use stereopsis_host::calibrate::board::{Dictionary, Markers, Pattern};
 use stereopsis_host::calibrate::coverage::{self, Coverage, coverage};
-use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve};
+use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve_paired};
 use stereopsis_host::calibration::{warnings, write_opencv};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::mock::MockCamera;
@@ -147,15 +147,26 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let pairs = pairs(&args.left, &args.right, &mut notes)?;
     let count = pairs.len();
     let (size, found) = boards(args.pattern, markers.as_ref(), pairs, &mut notes)?;
-    let views: Vec<View> = found.iter().map(|found| found.view.clone()).collect();
+    let all: Vec<View> = found.iter().map(|found| found.view.clone()).collect();
     let failed = |e: &dyn std::fmt::Display| {
         let last = notes.last().map(|note| format!("; {note}")).unwrap_or_default();
         Failure::new(format!("--left and --right: {e}{last}"))
     };
-    let result = solve(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &views)
+    let (result, kept) = solve_paired(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &all)
         .map_err(|e| failed(&e))?;
     let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
     let wrong = warnings(&result.rig, &rectified);
+    let (found, left_out): (Vec<_>, Vec<_>) =
+        found.into_iter().enumerate().partition(|(place, _)| kept.contains(place));
+    for (_, Found { paths: [left, right], .. }) in left_out {
+        notes.push(format!(
+            "{} and {} are left out: they do not belong together, as the other pairs do",
+            left.display(),
+            right.display()
+        ));
+    }
+    let found: Vec<_> = found.into_iter().map(|(_, found)| found).collect();
+    let views: Vec<View> = found.iter().map(|found| found.view.clone()).collect();
 
     for i in result.outliers() {
         let [left, right] = &found[i].paths;

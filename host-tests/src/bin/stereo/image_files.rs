@@ -52,6 +52,19 @@ fn number(path: &Path) -> Option<u64> {
     tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
 }
 
+/// The first two neighbours between which files seem to be missing: their numbers are farther apart than most
+/// are. `None` where there are none, or files have no numbers.
+pub fn gap(files: &[&Path]) -> Option<[PathBuf; 2]> {
+    let numbers: Vec<u64> = files.iter().map(|file| number(file)).collect::<Option<_>>()?;
+    let steps: Vec<u64> = numbers.windows(2).map(|pair| pair[1].saturating_sub(pair[0])).collect();
+    let mut sorted = steps.clone();
+    sorted.sort_unstable();
+    // Time stamps are not quite as far apart as each other.
+    let most = sorted.get(sorted.len() / 2)?.saturating_mul(3) / 2;
+    let place = steps.iter().position(|&step| step > most)?;
+    Some([files[place].to_owned(), files[place + 1].to_owned()])
+}
+
 /// The files that patterns name, in the order of their names, numbers by their value.
 pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();

@@ -32,6 +32,8 @@ pub struct Line {
     median_px: Option<f64>,
     time_ms: f64,
     state_bytes: u64,
+    /// What is wrong with the pair, as in its summary.json.
+    fault: Option<String>,
 }
 
 impl Line {
@@ -49,6 +51,7 @@ impl Line {
             median_px: summary["disparity_px"]["median"].as_f64(),
             time_ms: number("time_ms"),
             state_bytes: summary["state_bytes"].as_u64().unwrap_or(0),
+            fault: summary["pair"]["fault"].as_str().map(str::to_owned),
         })
     }
 }

@@ -3,6 +3,7 @@
 mod summary;
 
 use crate::failure::Failure;
+use crate::image_files::gap;
 use crate::input::fits;
 use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
@@ -11,13 +12,14 @@ use crate::rig::warn_of;
 use crate::shared::{Unit, print, whole};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
-use std::io;
+use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{
     camera::ImageSize,
     rectify::{Crop, Rectification},
 };
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
+use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
@@ -134,6 +136,17 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         && !args.force
     {
         refuse_swapped([&left, &right], || exchanged(&sequence, cameras.rectification.as_ref()?))?;
+    }
+    let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
+    if let Some([before, after]) = gap(&files) {
+        // Nobody is left to tell when standard error is closed.
+        let _ = writeln!(
+            io::stderr(),
+            "stereo: warning: frames seem to be missing, the first of them between {} and {}: the way \
+             between them is guessed",
+            one_line(&before.display().to_string()),
+            one_line(&after.display().to_string())
+        );
     }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));

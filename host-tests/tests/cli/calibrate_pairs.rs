@@ -1,0 +1,31 @@
+//! `stereo calibrate` of pairs whose images do not belong together.
+
+use super::calibrate::{arguments, pictures};
+use super::support::{Bench, stereo, text};
+
+#[test]
+fn pairs_that_are_of_two_moments_are_left_out() {
+    let bench = Bench::new();
+    pictures(&bench);
+    let copy = |from: &str, to: &str| std::fs::copy(bench.path(from), bench.path(to)).expect("a picture");
+    copy("left1.png", "left7.png");
+    copy("right3.png", "right7.png");
+    let run = stereo(arguments(&bench, &[]));
+    let said = text(&run.stdout);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    assert!(said.contains("right7.png are left out") && said.contains("5 of 7 views"), "{said}");
+    // Every right picture one moment late.
+    for n in (2..=5).rev() {
+        copy(&format!("right{n}.png"), &format!("late{n}.png"));
+    }
+    for n in 2..=5 {
+        copy(&format!("late{n}.png"), &format!("right{}.png", n - 1));
+    }
+    std::fs::remove_file(bench.path("stereo.yml")).expect("the calibration");
+    let [left, right] =
+        ["left[1-4].png", "right[1-4].png"].map(|name| bench.path(name).display().to_string());
+    bench.refused(
+        &arguments(&bench, &[("--left", &left), ("--right", &right)]),
+        "too many pairs are not of one moment",
+    );
+}

@@ -21,8 +21,9 @@
 //! * [`run`]: a stereo source through the core's pipeline into whole maps.
 //! * [`correspond`]: two pictures through the core's features and matcher. [`correspond_refine`]: to a small
 //!   part of a pixel. [`two_view`]: correspondences of a
-//!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance. [`turned`]: whether
-//!   they show a camera that has only turned.
+//!   known scene, with noise and wrong ones. [`chance`]: whether matches agree by chance. [`degenerate`]:
+//!   what is special about those that nothing explains. [`turned`]: whether they show a camera that has only
+//!   turned.
 //! * [`focus`]: focus stacks, a simulated lens, and stacks through the core's map.
 //! * [`obstacles`]: ground, stixels and sectors of a whole map, as a record and a picture.
 //! * [`odometry`]: sequences of pictures through the core's odometry, trajectories and their errors.
@@ -43,6 +44,7 @@ pub mod colour;
 pub mod command_line;
 pub mod correspond;
 pub mod correspond_refine;
+pub mod degenerate;
 pub mod depth_samples;
 pub mod dump;
 pub mod epipolar_picture;

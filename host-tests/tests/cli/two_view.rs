@@ -204,6 +204,11 @@ fn bad_matches() {
     bench.put("m.csv", matches(60, false, true).as_bytes());
     bench.refused(&arguments(&bench, "fundamental", &[]), "plane");
     bench.refused(&arguments(&bench, "fundamental", &["--method", "eight-point"]), "plane");
+    let still: String = (0..40).map(|i| format!("{0},{1},{0},{1}\n", 37 * i % 640, 91 * i % 480)).collect();
+    bench.put("m.csv", format!("x1,y1,x2,y2\n{still}").as_bytes());
+    for command in ["fundamental", "pose"] {
+        bench.refused(&arguments(&bench, command, &[]), "no match moves");
+    }
     let missing = bench.path("none.csv").display().to_string();
     bench.refused(&["fundamental", "--matches", &missing, "--out", "answer.json"], "none.csv");
 }

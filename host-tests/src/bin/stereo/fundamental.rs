@@ -11,10 +11,11 @@ use std::hint::black_box;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 use stereopsis::geometry::{
-    robust::{RobustConfig, robust_fundamental},
+    robust::{RobustConfig, RobustError, robust_fundamental},
     two_view::{Correspondence, Fundamental, eight_point},
 };
 use stereopsis_host::chance::log10_false_alarms;
+use stereopsis_host::degenerate::degenerate;
 use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::MockCamera;
@@ -162,6 +163,12 @@ fn images_of(
     Ok(images)
 }
 
+/// Why matches have no fundamental matrix: what is special about them says more than that there is none.
+pub fn why(seen: &[Correspondence<f64>], error: &RobustError) -> String {
+    let special = degenerate(seen).filter(|_| *error == RobustError::NoAgreement);
+    special.map_or_else(|| error.to_string(), |special| special.to_string())
+}
+
 /// By the method that the options name, or why not.
 pub fn estimate(seen: &[Correspondence<f64>], args: &RobustArgs) -> Result<Estimate, String> {
     match args.method {
@@ -173,7 +180,7 @@ pub fn estimate(seen: &[Correspondence<f64>], args: &RobustArgs) -> Result<Estim
         TwoViewMethod::Ransac => {
             let mut inliers = vec![false; seen.len()];
             let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
-            let found = robust_fundamental(seen, &config, &mut inliers).map_err(|e| e.to_string())?;
+            let found = robust_fundamental(seen, &config, &mut inliers).map_err(|e| why(seen, &e))?;
             let samples = Some((found.samples, found.miss_probability));
             Ok(Estimate { fundamental: found.fundamental, inliers, samples })
         }

@@ -1,7 +1,7 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
 use crate::failure::Failure;
-use crate::fundamental::by_chance;
+use crate::fundamental::{by_chance, why};
 use crate::place::json_file;
 use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
 use clap::Args;
@@ -186,7 +186,7 @@ fn start(
             let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
             match robust_fundamental(seen, &config, &mut inliers) {
                 Err(RobustError::Plane) => None,
-                found => Some(found.map_err(|e| e.to_string())?.fundamental),
+                found => Some(found.map_err(|e| why(seen, &e))?.fundamental),
             }
         }
     };

@@ -1,6 +1,7 @@
 //! `stereo rectify --matches`: a raw pair whose cameras nobody knows, its rows aligned by matches alone.
 
 use crate::failure::Failure;
+use crate::fundamental::why;
 use crate::input::Pair;
 use crate::place::{json, png};
 use crate::shared::{print, rows};
@@ -62,8 +63,8 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
         )));
     }
     let mut inliers = vec![false; seen.len()];
-    let found =
-        robust_fundamental(&seen, &RobustConfig::new(THRESHOLD_PX), &mut inliers).map_err(|e| failed(&e))?;
+    let found = robust_fundamental(&seen, &RobustConfig::new(THRESHOLD_PX), &mut inliers)
+        .map_err(|e| failed(&why(&seen, &e)))?;
     let right: Vec<_> =
         seen.iter().zip(&inliers).filter(|(_, is_right)| **is_right).map(|(s, _)| *s).collect();
     if right.len() < FEWEST {

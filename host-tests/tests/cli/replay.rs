@@ -34,6 +34,13 @@ pub fn run(arguments: &[&str]) -> String {
     text(&run.stdout).to_owned()
 }
 
+/// What a run that succeeds says on standard error.
+fn notes(arguments: &[&str]) -> String {
+    let run = stereo(arguments);
+    assert!(run.status.success(), "{arguments:?}: {}", text(&run.stderr));
+    text(&run.stderr).to_owned()
+}
+
 pub fn summary(bench: &Bench, folder: &str) -> serde_json::Value {
     let file = fs::read(bench.path(folder).join("summary.json")).expect("a summary");
     serde_json::from_slice(&file).expect("JSON")
@@ -123,7 +130,7 @@ fn recorded_faults_happen_again_and_are_counted_by_name() {
     // A recording that was cut is played up to there.
     let bytes = fs::read(&file).expect("a file");
     fs::write(&again, &bytes[..bytes.len() * 2 / 3]).expect("a file");
-    let told = run(&["replay", "--from", &again, "--disparities", "16", "--out", &out]);
+    let told = notes(&["replay", "--from", &again, "--disparities", "16", "--out", &out]);
     assert!(told.contains("ends within a record"), "{told}");
 }
 
@@ -202,7 +209,7 @@ fn what_cannot_be_recorded_or_is_odd_is_reported_by_name() {
     fs::write(&file, bytes).expect("a recording");
     let replayed = bench.path("out").display().to_string();
     let told =
-        run(&["replay", "--from", &out, "--disparities", "16", "--timing", "recorded", "--out", &replayed]);
+        notes(&["replay", "--from", &out, "--disparities", "16", "--timing", "recorded", "--out", &replayed]);
     assert!(told.contains("note: time stamps go back at frame 2;"), "{told}");
     assert_eq!(summary(&bench, "out")["time_went_back_at"], 2);
 

@@ -5,7 +5,7 @@ mod boards;
 use crate::failure::Failure;
 use crate::image_files::pairs;
 use crate::place::{Place, png};
-use crate::shared::print;
+use crate::shared::{print, remark};
 use boards::{Found, boards};
 use clap::{Args, ValueEnum};
 use image::RgbImage;
@@ -199,11 +199,10 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     }
     place.write(|out| out.write_all(file.as_bytes()), None)?;
 
-    let mut text = String::new();
     for note in &notes {
-        let _ = writeln!(text, "note: {}", one_line(note));
+        remark(&format!("note: {note}"));
     }
-    let _ = writeln!(text, "{} of {count} views, {} x {} px", views.len(), size.width, size.height);
+    let mut text = format!("{} of {count} views, {} x {} px\n", views.len(), size.width, size.height);
     text += &result.words();
     let ([columns, rows], [left, right]) = (coverage::CELLS, covered);
     let _ = writeln!(

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input::RAW;
 use crate::place::Place;
-use crate::shared::{PairArgs, print, whole};
+use crate::shared::{PairArgs, print, remark, whole};
 use clap::{Args, ValueEnum};
 use image::{GrayImage, RgbImage};
 use std::fmt::Write;
@@ -112,10 +112,10 @@ pub fn run(args: &FeaturesArgs) -> Result<(), Failure> {
     let drawn = |place| (place, matches_picture(&left.colours, &right.colours, found.points()));
     out.write(|out| out.write_all(lines(&found).as_bytes()), picture.as_ref().map(drawn))?;
 
-    let mut text = String::new();
     for note in [left.note, right.note].iter().flatten() {
-        let _ = writeln!(text, "note: {}", one_line(note));
+        remark(&format!("note: {note}"));
     }
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "{} and {} corners, {} matches",

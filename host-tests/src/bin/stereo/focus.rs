@@ -2,11 +2,10 @@
 
 use crate::failure::Failure;
 use crate::place::png;
-use crate::shared::{length, print};
+use crate::shared::{length, print, remark};
 use clap::Args;
 use image::RgbImage;
 use std::fmt::Write as _;
-use std::io::Write as _;
 use std::path::PathBuf;
 use stereopsis::focus::{FocusScale, ThinLens};
 use stereopsis_host::command_line::one_line;
@@ -176,12 +175,10 @@ fn kept(args: &FocusArgs, stack: &Stack) -> Result<Vec<usize>, Failure> {
         )));
     };
     for &index in &out {
-        // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(
-            std::io::stderr(),
-            "stereo: warning: {}: is out of order or spoiled, for its neighbours are alike; left out",
-            one_line(&stack.file(index).display().to_string())
-        );
+        remark(&format!(
+            "warning: {}: is out of order or spoiled, for its neighbours are alike; left out",
+            stack.file(index).display()
+        ));
     }
     Ok(all.filter(|index| !out.contains(index)).collect())
 }

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::match_args::MatchArgs;
 use crate::resume;
-use crate::shared::print;
+use crate::shared::{print, remark};
 use crate::solve::{FINISHED, check_obstacles, solve};
 use crate::sources::Input;
 use crate::watch::{OVER_TIME, Watch};
@@ -12,7 +12,6 @@ use serde::Serialize;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::limits;
@@ -86,8 +85,7 @@ pub fn run(
         let is_done = fs::read_to_string(out.join(FINISHED)).is_ok_and(|found| found == mark);
         let what = if is_done { "is there already" } else { "is being matched" };
         if !args.quiet {
-            // Nobody is left to tell when standard error is closed.
-            let _ = writeln!(std::io::stderr(), "stereo: {frame}{of} {what}: {}", one_line(&input.name()));
+            remark(&format!("{frame}{of} {what}: {}", input.name()));
         }
         let one = MatchArgs { out: out.clone(), ..args.clone() };
         let named = |e: Failure| Failure::new(format!("{frame}: {e}"));

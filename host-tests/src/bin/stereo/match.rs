@@ -6,13 +6,11 @@ use crate::match_args::MatchArgs;
 use crate::rectified::RectifiedCameras;
 use crate::results::{figures, place};
 use crate::settings;
-use crate::shared::print;
+use crate::shared::{self, print};
 use crate::solve::solve;
 use crate::sources::Sources;
 use crate::watch::Watch;
 use std::fmt::Write as _;
-use std::io::Write as _;
-use stereopsis_host::command_line::one_line;
 use stereopsis_host::report::Summary;
 
 /// What follows the options in the command's help.
@@ -49,7 +47,7 @@ pub fn run(args: &MatchArgs) -> Result<(), Failure> {
         return settings::run(args, input);
     }
     for note in notes {
-        let _ = writeln!(std::io::stderr(), "stereo: note: {}", one_line(&note));
+        shared::remark(&format!("note: {note}"));
     }
     match sources {
         Sources::Many(inputs) => {

@@ -9,17 +9,16 @@ use crate::look::refuse_swapped;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::rig::warn_of;
-use crate::shared::{Unit, print, whole};
+use crate::shared::{Unit, print, remark, whole};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::geometry::{
     camera::ImageSize,
     rectify::{Crop, Rectification},
 };
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
-use stereopsis_host::command_line::one_line;
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
@@ -139,14 +138,12 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     }
     let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
     if let Some([before, after]) = gap(&files) {
-        // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(
-            io::stderr(),
-            "stereo: warning: frames seem to be missing, the first of them between {} and {}: the way \
-             between them is guessed",
-            one_line(&before.display().to_string()),
-            one_line(&after.display().to_string())
-        );
+        remark(&format!(
+            "warning: frames seem to be missing, the first of them between {} and {}: the way between them \
+             is guessed",
+            before.display(),
+            after.display()
+        ));
     }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));

@@ -4,11 +4,10 @@ use crate::failure::Failure;
 use crate::input::Pair;
 use crate::place::{json, png};
 use crate::rectified::{CAMERAS, MASKS, RectifiedCameras, open};
-use crate::shared::{PairArgs, RectifyOptions, print};
+use crate::shared::{PairArgs, RectifyOptions, print, remark};
 use crate::uncalibrated;
 use clap::Args;
 use std::fmt::Write;
-use std::io::{self, Write as _};
 use std::path::PathBuf;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::calibration::warnings;
@@ -75,16 +74,13 @@ pub fn run(args: &RectifyArgs) -> Result<(), Failure> {
     staging.commit(&[])?;
 
     for warning in warnings(&calibration.rig, &rectification) {
-        // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(io::stderr(), "stereo: warning: {warning}");
+        remark(&format!("warning: {warning}"));
     }
-    let mut text = String::new();
     for note in &pair.notes {
-        let _ = writeln!(text, "note: {}", one_line(note));
+        remark(&format!("note: {note}"));
     }
-    let _ = writeln!(
-        text,
-        "{} x {} px, {}, {} calibration",
+    let mut text = format!(
+        "{} x {} px, {}, {} calibration\n",
         size.width, size.height, summary.axis, calibration.format
     );
     text += &summary.figures();

@@ -8,14 +8,14 @@ use crate::look::{self, Look, SearchArgs};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::scale::camera;
-use crate::shared::{BalanceArgs, MethodArgs, Unit, filter, method, noise, print, rate};
+use crate::shared::{BalanceArgs, MethodArgs, Unit, filter, method, noise, print, rate, remark};
 use crate::typed_rig::TypedRig;
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
 use std::fmt::Display;
 use std::fs;
-use std::io::{self, Write as _};
+use std::io;
 use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
 use stereopsis::imaging::Noise;
@@ -257,8 +257,10 @@ fn play(
     let stale = earlier_results(&args.out)?;
     staging.commit(&stale.iter().map(String::as_str).chain(OVER_TIME).collect::<Vec<_>>())?;
     for warning in summary.pair.iter().flat_map(|pair| &pair.warnings) {
-        // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(io::stderr(), "stereo: warning: {warning}");
+        remark(&format!("warning: {warning}"));
+    }
+    for note in summary.notes() {
+        remark(&format!("note: {note}"));
     }
     if args.quiet {
         return Ok(());

@@ -1,9 +1,8 @@
 //! What `odometry` says of how a pair differs from its calibration.
 
-use std::io::Write;
+use crate::shared::remark;
 use std::path::Path;
 use stereopsis::motion::odometry::RigEstimate;
-use stereopsis_host::command_line::one_line;
 
 /// What the points' motion shows of a pair.
 pub fn rig_line(rig: &RigEstimate<f64>) -> String {
@@ -39,13 +38,11 @@ impl std::fmt::Display for Signed {
 pub fn warn_of(rig: Option<&RigEstimate<f64>>, calib: &Path) {
     let Some(rig) = rig.filter(|rig| rig.is_off()) else { return };
     let done = if rig.is_applied { "the poses are corrected for it" } else { "distances are wrong by it" };
-    // Nobody is left to tell when standard error is closed.
-    let _ = writeln!(
-        std::io::stderr(),
-        "stereo: warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or \
+    remark(&format!(
+        "warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or \
          its principal point is another; {done}; calibrate the pair again",
-        one_line(&calib.display().to_string()),
+        calib.display(),
         rig.disparity_px,
         rig.sigma_px
-    );
+    ));
 }

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::matching::{Config, Filter, Kernel, Row};
 use stereopsis_host::colour::ColourScale;
+use stereopsis_host::command_line::one_line;
 use stereopsis_host::run::{MethodName, NoiseChoice, RunOptions, UnknownMethod, UnknownNoise};
 
 #[derive(Debug, Args)]
@@ -234,6 +235,12 @@ pub fn print(text: &str) -> Result<(), Failure> {
         Err(e) if e.kind() != io::ErrorKind::BrokenPipe => Err(Failure::new(format!("standard output: {e}"))),
         _ => Ok(()),
     }
+}
+
+/// Writes a line to standard error: a note, a warning, or what is being done.
+pub fn remark(line: &str) {
+    // Nobody is left to tell when standard error is closed.
+    let _ = writeln!(io::stderr(), "stereo: {}", one_line(line));
 }
 
 /// A matrix by its rows.

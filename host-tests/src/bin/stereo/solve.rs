@@ -9,14 +9,13 @@ use crate::place::{json, png};
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthFiles};
 use crate::scale::{camera, scale};
+use crate::shared::remark;
 use crate::watch::{self, OBSTACLES, Watch};
 use image::{RgbImage, imageops};
 use std::fmt::Display;
-use std::io::Write as _;
 use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
-use stereopsis_host::command_line::one_line;
 use stereopsis_host::masked::MaskedPair;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
@@ -121,11 +120,10 @@ pub fn solve(
     let stale: Vec<_> = stale.collect();
     staging.commit(&stale)?;
 
-    let notes = pair.notes.iter().map(|note| format!("note: {}", one_line(note)));
+    let notes = pair.notes.iter().map(|note| format!("note: {note}"));
     let warnings = summary.warnings().iter().map(|warning| format!("warning: {warning}"));
     for line in notes.chain(warnings) {
-        // Nobody is left to tell when standard error is closed.
-        let _ = writeln!(std::io::stderr(), "stereo: {label}{line}");
+        remark(&format!("{label}{line}"));
     }
     Ok((summary, scene.rectified))
 }

@@ -5,7 +5,7 @@ use crate::image_files::files;
 use crate::input::fits;
 use crate::place::json;
 use crate::progress::Progress;
-use crate::shared::{print, rows};
+use crate::shared::{print, remark, rows};
 use clap::Args;
 use image::{GrayImage, RgbImage};
 use serde::Serialize;
@@ -138,11 +138,11 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
         answer.rms_px
     );
     for view in names(false) {
-        text += &format!("note: {} stands nowhere: {}\n", one_line(&view.image), view.state);
+        remark(&format!("note: {} stands nowhere: {}", view.image, view.state));
     }
     text += &format!("unit         {}\n", one_line(&unit));
     if answer.plane {
-        text += "note: what it began with is on a plane\n";
+        remark("note: what it began with is on a plane");
     }
     print(&format!("{text}results are in {}\n", one_line(&args.out.display().to_string())))
 }

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::fundamental::why;
 use crate::input::Pair;
 use crate::place::{json, png};
-use crate::shared::{print, rows};
+use crate::shared::{print, remark, rows};
 use image::{GrayImage, Luma, imageops};
 use nalgebra::Point2;
 use serde::Serialize;
@@ -106,10 +106,10 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     staging.write("rectified.json", |out| json(out, &summary))?;
     staging.commit(&[])?;
 
-    let mut text = String::new();
     for note in &pair.notes {
-        let _ = writeln!(text, "note: {}", one_line(note));
+        remark(&format!("note: {note}"));
     }
+    let mut text = String::new();
     let _ = writeln!(
         text,
         "{} x {} px, horizontal, without a calibration: nothing is in metres",

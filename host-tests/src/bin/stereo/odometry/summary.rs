@@ -2,6 +2,7 @@
 
 use super::{Cams, OdometryArgs};
 use crate::rig::rig_line;
+use crate::shared::remark;
 use std::fmt::Write;
 use stereopsis::geometry::camera::Pose;
 use stereopsis::motion::odometry::State;
@@ -72,8 +73,7 @@ pub fn summary(
 
 fn errors(text: &mut String, trajectory: &Trajectory, truth: &[Pose<f64>], is_stereo: bool) {
     if truth.len() != trajectory.poses.len() {
-        let _ =
-            writeln!(text, "note: the truth has {} poses; as many as both have are compared", truth.len());
+        remark(&format!("note: the truth has {} poses; as many as both have are compared", truth.len()));
     }
     let alignment = alignment(is_stereo);
     let Some(found) = align(&trajectory.poses, truth, alignment) else { return };

@@ -85,6 +85,15 @@ impl From<FaultCounters> for Counters {
 }
 
 impl Summary {
+    /// What is to be known about the recording, a line each.
+    pub fn notes(&self) -> impl Iterator<Item = String> {
+        let cut = "the recording ends within a record; what is before it was played";
+        let back = self.time_went_back_at.map(|frame| {
+            format!("time stamps go back at frame {frame}; frames were played in the order of the file")
+        });
+        self.recording_was_cut.then(|| cut.to_owned()).into_iter().chain(back)
+    }
+
     /// The figures in a few lines.
     pub fn figures(&self, out: &Path) -> String {
         let mut text = format!(
@@ -106,15 +115,6 @@ impl Summary {
         if self.balanced_frames > 0 {
             let _ =
                 writeln!(text, "{} with the right image in the left one's exposure", self.balanced_frames);
-        }
-        if self.recording_was_cut {
-            text += "note: the recording ends within a record; what is before it was played\n";
-        }
-        if let Some(frame) = self.time_went_back_at {
-            let _ = writeln!(
-                text,
-                "note: time stamps go back at frame {frame}; frames were played in the order of the file"
-            );
         }
         let _ = writeln!(text, "results are in {}", one_line(&out.display().to_string()));
         text

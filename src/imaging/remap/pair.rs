@@ -47,8 +47,9 @@ impl<const W: usize, const N: usize, const SLOTS: usize> RemapPair<W, N, SLOTS> 
         [&self.left, &self.right]
     }
 
-    /// Returns the least `N` for which a [`RectifiedPair`] takes these remaps: a camera's lines are held
-    /// until the other's next line is in, which may be more lines than each remap needs alone.
+    /// Returns the least `N` for which a [`RectifiedPair`](super::RectifiedPair) takes these remaps: a
+    /// camera's lines are held until the other's next line is in, which may be more lines than each remap
+    /// needs alone.
     pub fn lines_needed(&self) -> usize {
         let tables = self.remaps().map(Remap::table);
         let height = tables.map(|table| table.size().height).into_iter().max().unwrap_or(0);

@@ -256,12 +256,7 @@ fn play(
     staging.write("summary.json", |out| json(out, &summary))?;
     let stale = earlier_results(&args.out)?;
     staging.commit(&stale.iter().map(String::as_str).chain(OVER_TIME).collect::<Vec<_>>())?;
-    for warning in summary.pair.iter().flat_map(|pair| &pair.warnings) {
-        remark(&format!("warning: {warning}"));
-    }
-    for note in summary.notes() {
-        remark(&format!("note: {note}"));
-    }
+    summary.remarks().for_each(|line| remark(&line));
     if args.quiet {
         return Ok(());
     }

@@ -85,13 +85,15 @@ impl From<FaultCounters> for Counters {
 }
 
 impl Summary {
-    /// What is to be known about the recording, a line each.
-    pub fn notes(&self) -> impl Iterator<Item = String> {
-        let cut = "the recording ends within a record; what is before it was played";
+    /// What is to be known about the pair and the recording, a line each.
+    pub fn remarks(&self) -> impl Iterator<Item = String> {
+        let warnings = self.pair.iter().flat_map(|pair| &pair.warnings);
+        let cut = "note: the recording ends within a record; what is before it was played";
         let back = self.time_went_back_at.map(|frame| {
-            format!("time stamps go back at frame {frame}; frames were played in the order of the file")
+            format!("note: time stamps go back at frame {frame}; frames were played in the order of the file")
         });
-        self.recording_was_cut.then(|| cut.to_owned()).into_iter().chain(back)
+        let notes = self.recording_was_cut.then(|| cut.to_owned()).into_iter().chain(back);
+        warnings.map(|warning| format!("warning: {warning}")).chain(notes)
     }
 
     /// The figures in a few lines.

@@ -122,6 +122,9 @@ pub(in crate::matching) struct AnswerWork<'a> {
     pub workspace: &'a mut [u32],
     /// The first column that has a candidate.
     pub begin: usize,
+    /// Of a method that compares the pixels of an offer, the row of the left image from that column on, and
+    /// the right image's row: as many as there are answers.
+    pub pixels: Option<[&'a [u8]; 2]>,
     /// The checks that refuse winners.
     pub rules: &'a Rules,
     /// The answers and flags from that column on.

@@ -9,6 +9,7 @@
 use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
 use crate::matching::config::Config;
+use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view;
 use crate::matching::memory::workspace::ForAnswers;
@@ -17,7 +18,7 @@ use crate::units::{Disparity, PixelFlags};
 
 /// Turns the winners of `newest` into answers, none of those that the checks contradict, and says why: flags
 /// that are set already stay.
-pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
+pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize, lines: Option<[&Rows5<'_>; 2]>) {
     let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
     let config = frame.config;
     let checks = &config.checks;
@@ -45,7 +46,13 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     } else {
         let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
         let (answers, flags) = (&mut *answers, &mut *flags);
-        let work = AnswerWork { winners, right, workspace, begin, rules, answers, flags };
+        let pixels = lines.filter(|_| S::COMPARES_PIXELS).map(|lines| {
+            // The last one of the lines that are in is two rows below the middle one.
+            let [left, of_right] =
+                lines.map(|lines| lines.get(2 - S::RADIUS_Y.min(2)).copied().unwrap_or_default());
+            [part(left, begin..width), part(of_right, ..width - begin)]
+        });
+        let work = AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags };
         frame.backend.left_right::<S>(work);
     }
     flag_first_column(config, answers, flags);

@@ -155,7 +155,7 @@ fn finish_row<S: Method, const MOST: usize>(
         texture::flag_untextured::<S>(frame, newest);
         #[cfg(feature = "trace")]
         traced::winners::<S>(frame, newest);
-        left_right::make_answers::<S>(frame, newest);
+        left_right::make_answers::<S>(frame, newest, lines);
         #[cfg(feature = "trace")]
         traced::subpixel(frame, newest);
         open::refuse_unsure(frame, newest);

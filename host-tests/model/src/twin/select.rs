@@ -1,7 +1,7 @@
 //! Which disparity wins at a pixel, and what is to be said about it.
 
 use super::cost::Volume;
-use super::{Method, Picture};
+use super::{Cost, Method, Picture};
 use stereopsis::matching::{Checks, Config, WinnerRecord};
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -18,7 +18,7 @@ struct Winner {
 pub(super) fn select_row(
     scheme: &Method,
     config: &Config,
-    left: &Picture<'_>,
+    pair: [&Picture<'_>; 2],
     sums: &Volume,
     y: usize,
 ) -> (Vec<Disparity>, Vec<PixelFlags>, Vec<u16>) {
@@ -30,7 +30,8 @@ pub(super) fn select_row(
         &sums.at(x, y)[..most]
     };
     let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
-    let held = held_by_right_columns(&winners, smallest);
+    let held =
+        held_by_right_columns(&winners, |x, winner| offer(scheme, pair, smallest, (x, y), winner), smallest);
 
     let mut disparities = vec![Disparity::NONE; sums.width];
     let mut flags = vec![PixelFlags::CLEAR; sums.width];
@@ -52,7 +53,7 @@ pub(super) fn select_row(
         if checks.uniqueness_percent.is_some_and(|percent| ambiguous(candidates(x), best, percent)) {
             say(PixelFlags::AMBIGUOUS, true);
         }
-        if untextured(scheme, checks, left, x, y) || checks.refuse_flat && flat(candidates(x), best) {
+        if untextured(scheme, checks, pair[0], x, y) || checks.refuse_flat && flat(candidates(x), best) {
             say(PixelFlags::UNTEXTURED, true);
         }
         if let Some(most) = checks.left_right_px {
@@ -75,14 +76,21 @@ pub(super) fn select_row(
 }
 
 /// The winners of row `y` as records, with what their partners keep; zero where there is no candidate.
-pub(super) fn records(config: &Config, sums: &Volume, y: usize) -> Vec<WinnerRecord> {
+pub(super) fn records(
+    scheme: &Method,
+    config: &Config,
+    pair: [&Picture<'_>; 2],
+    sums: &Volume,
+    y: usize,
+) -> Vec<WinnerRecord> {
     let smallest = usize::from(config.min_disparity);
     let candidates = |x: usize| {
         let most = if x >= smallest { (x - smallest + 1).min(sums.disparities) } else { 0 };
         &sums.at(x, y)[..most]
     };
     let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
-    let held = held_by_right_columns(&winners, smallest);
+    let held =
+        held_by_right_columns(&winners, |x, winner| offer(scheme, pair, smallest, (x, y), winner), smallest);
     let record = |(x, winner): (usize, &Option<Winner>)| {
         let Some(best) = winner else { return WinnerRecord::ZERO.sealed(y as u16) };
         let costs = candidates(x);
@@ -104,19 +112,40 @@ fn winner(candidates: &[u16]) -> Option<Winner> {
     Some(Winner { d, cost })
 }
 
+/// What the winner of the pixel (x, y) offers its partner: its cost, and of a method along paths four times
+/// what the two pixels differ by, as long as a row below tells both; at most 255.
+fn offer(
+    scheme: &Method,
+    pair: [&Picture<'_>; 2],
+    smallest: usize,
+    (x, y): (usize, usize),
+    winner: Winner,
+) -> u16 {
+    let [left, right] = pair;
+    let is_compared = matches!(scheme.cost, Cost::Paths { .. }) && y + scheme.radius_y < left.height;
+    let partner = x - smallest - winner.d;
+    let apart = left.at(x as isize, y as isize).abs_diff(right.at(partner as isize, y as isize));
+    if is_compared { (winner.cost + 4 * u16::from(apart)).min(255) } else { winner.cost }
+}
+
 /// What every right column holds after the left pixels, in order, have offered their winners: the cheapest
 /// offer, the first among equals.
-fn held_by_right_columns(winners: &[Option<Winner>], smallest: usize) -> Vec<Option<Winner>> {
-    let mut held: Vec<Option<Winner>> = vec![None; winners.len()];
+fn held_by_right_columns(
+    winners: &[Option<Winner>],
+    offer: impl Fn(usize, Winner) -> u16,
+    smallest: usize,
+) -> Vec<Option<Winner>> {
+    let mut held: Vec<Option<(u16, Winner)>> = vec![None; winners.len()];
     for (x, winner) in winners.iter().enumerate() {
-        if let Some(offer) = winner {
-            let holder = &mut held[x - smallest - offer.d];
-            if holder.is_none_or(|h| offer.cost < h.cost) {
-                *holder = Some(*offer);
+        if let Some(winner) = *winner {
+            let cost = offer(x, winner);
+            let holder = &mut held[x - smallest - winner.d];
+            if holder.is_none_or(|(held, _)| cost < held) {
+                *holder = Some((cost, winner));
             }
         }
     }
-    held
+    held.into_iter().map(|held| Some(held?.1)).collect()
 }
 
 /// Steps of 1/32 px from the winner to the tip of the two equally steep lines through its cost and its

@@ -56,8 +56,9 @@ impl Stages {
         let open = Open::of(config, &left, scheme.radius_y);
         let repeats = Repeats::of(scheme, config, &left);
         for y in 0..height {
-            winners.extend(select::records(config, &aggregated, y));
-            let (answers, row_flags, row_margins) = select::select_row(scheme, config, &left, &aggregated, y);
+            let pair = [&left, &right];
+            winners.extend(select::records(scheme, config, pair, &aggregated, y));
+            let (answers, row_flags, row_margins) = select::select_row(scheme, config, pair, &aggregated, y);
             flags.extend_from_slice(&row_flags);
             subpixel.extend_from_slice(&answers);
             let (answers, row_flags) = open.refuse(config, y, &row_margins, answers, row_flags);

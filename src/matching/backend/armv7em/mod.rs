@@ -105,9 +105,9 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
-        let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
+        let AnswerWork { winners, right, begin, pixels, rules, answers, flags, .. } = work;
         let winners = part(winners.words(), begin..);
-        left_right::offer(winners, right);
+        left_right::offer(winners, pixels, right);
         answers::answer::<P>(winners, right, rules, answers, flags);
     }
 

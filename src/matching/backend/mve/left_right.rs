@@ -1,18 +1,57 @@
 //! The left-right check's work along a row: `portable/consistency.rs` says what it is.
 #![allow(unsafe_code)]
 
+use crate::matching::memory::winners::WinnerRows;
 use core::arch::asm;
 
 /// Offers every winner, by its cost above its disparity, to its partner among the columns `right`, which keep
 /// the least; then gives in `kept` the disparity that each one's partner keeps.
 #[inline(never)]
-pub(super) fn keep(costs: &[u8], disparities: &[u8], right: &mut [u16], kept: &mut [u8]) {
+pub(super) fn keep(winners: &WinnerRows<'_>, pixels: Option<[&[u8]; 2]>, right: &mut [u16], kept: &mut [u8]) {
+    let (costs, disparities) = (&*winners.costs, &*winners.disparities);
     let count = disparities.len().min(costs.len()).min(right.len()).min(kept.len());
     let (Some(costs), Some(disparities)) = (costs.get(..count), disparities.get(..count)) else { return };
     let (Some(right), Some(kept)) = (right.get_mut(..count), kept.get_mut(..count)) else { return };
-    if count > 0 {
-        offer(costs, disparities, right);
-        look(disparities, right, kept);
+    if count == 0 {
+        return;
+    }
+    match pixels.map(|pixels| pixels.map(|row| row.get(..count))) {
+        Some([Some(left), Some(of_right)]) => {
+            compare(costs, disparities, [left, of_right], kept);
+            offer(kept, disparities, right);
+        }
+        _ => offer(costs, disparities, right),
+    }
+    look(disparities, right, kept);
+}
+
+/// The costs of offers whose pixels are compared, for slices of one length: fifteen instructions for eight
+/// pixels.
+fn compare(costs: &[u8], disparities: &[u8], [left, of_right]: [&[u8]; 2], offers: &mut [u8]) {
+    // SAFETY: as for `offer`; the pixel of `of_right` that is read has the number of the partner.
+    unsafe {
+        asm!(
+            "vmov.i16 q3, #255",
+            "dlstp.16 lr, {count}",
+            "2:",
+            "vldrb.u16 q0, [r0], #8",
+            "vidup.u16 q1, r4, #1",
+            "vmin.u16 q0, q0, q1",
+            "vsub.i16 q1, q1, q0",
+            "vldrb.u16 q0, [{of_right}, q1]",
+            "vldrb.u16 q1, [r1], #8",
+            "vabd.u16 q0, q0, q1",
+            "vshl.i16 q0, q0, #2",
+            "vldrb.u16 q1, [r2], #8",
+            "vadd.i16 q0, q0, q1",
+            "vmin.u16 q0, q0, q3",
+            "vstrb.16 q0, [r3], #8",
+            "letp lr, 2b",
+            count = in(reg) offers.len(), of_right = in(reg) of_right.as_ptr(),
+            inout("r0") disparities.as_ptr() => _, inout("r1") left.as_ptr() => _,
+            inout("r2") costs.as_ptr() => _, inout("r3") offers.as_mut_ptr() => _, inout("r4") 0 => _,
+            out("lr") _, out("q0") _, out("q1") _, out("q3") _, options(nostack),
+        );
     }
 }
 

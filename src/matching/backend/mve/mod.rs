@@ -123,11 +123,11 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn left_right<P: MethodParameters>(self, work: AnswerWork<'_>) {
-        let AnswerWork { winners, right, workspace, begin, rules, answers, flags } = work;
+        let AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags } = work;
         let width = winners.width();
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
-        left_right::keep(winners.costs, winners.disparities, right, kept);
+        left_right::keep(&winners, pixels, right, kept);
         answers::answer::<P>(&winners, kept, rules, fractions, answers, flags);
     }
 

@@ -12,9 +12,12 @@ use crate::units::{Disparity, PixelFlags};
 /// Makes answers of a row of winners: [`Isa::left_right`](crate::matching::backend::Isa::left_right).
 #[inline(always)]
 pub(in crate::matching::backend) fn left_right<S: MethodParameters>(work: AnswerWork<'_>) {
-    let AnswerWork { winners, right, begin, rules, answers, flags, .. } = work;
+    let AnswerWork { winners, right, begin, pixels, rules, answers, flags, .. } = work;
     let winners = part(winners.words(), begin..);
-    offer(winners, right);
+    match pixels {
+        Some(pixels) => offer_compared(winners, pixels, right),
+        None => offer(winners, right),
+    }
     answer::<S>(winners, right, rules, answers, flags);
 }
 
@@ -22,6 +25,25 @@ pub(in crate::matching::backend) fn left_right<S: MethodParameters>(work: Answer
 #[inline(never)]
 fn offer(winners: &[Winner], right: &mut [u16]) {
     consistency::offer(winners.iter().map(|winner| (winner.key(), winner.disparity() as u8)), right);
+}
+
+/// [`offer`] of winners that cost what their pixels differ by as well.
+#[inline(never)]
+fn offer_compared(winners: &[Winner], [left, of_right]: [&[u8]; 2], right: &mut [u16]) {
+    let count = of_right.len().min(right.len());
+    let (Some(of_right), Some(right)) = (of_right.get(..count), right.get_mut(..count)) else { return };
+    right.fill(u16::MAX);
+    for (x, (winner, &left)) in winners.iter().zip(left).enumerate() {
+        keep_loop();
+        let disparity = winner.disparity();
+        let partner = x.wrapping_sub(disparity as usize);
+        if let (Some(kept), Some(&partner)) = (right.get_mut(partner), of_right.get(partner)) {
+            let offer = consistency::compared(winner.key(), left.into(), partner.into());
+            if offer < u32::from(*kept) {
+                *kept = offer as u16;
+            }
+        }
+    }
 }
 
 /// The answers and flags of the columns that have a candidate.

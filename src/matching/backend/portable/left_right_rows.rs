@@ -14,15 +14,41 @@ pub(in crate::matching::backend) fn offer(costs: &[u8], disparities: &[u8], righ
     consistency::offer(keys, right);
 }
 
-/// [`offer`], then the disparity that each one's partner keeps.
+/// The pixels of the right image's row that are partners, one for each winner.
+#[inline(never)]
+pub(in crate::matching::backend) fn partners(disparities: &[u8], of_right: &[u8], partners: &mut [u8]) {
+    for (x, (partner, &disparity)) in partners.iter_mut().zip(disparities).enumerate() {
+        *partner = of_right.get(x.wrapping_sub(usize::from(disparity))).copied().unwrap_or_default();
+    }
+}
+
+/// Makes offers of the pixels that are their partners: [`consistency::compared`].
+#[inline(always)]
+pub(in crate::matching::backend) fn compare(costs: &[u8], left: &[u8], partners: &mut [u8]) {
+    for ((partner, &cost), &left) in partners.iter_mut().zip(costs).zip(left) {
+        let apart = left.abs_diff(*partner);
+        *partner =
+            cost.saturating_add(apart.saturating_add(apart).saturating_add(apart.saturating_add(apart)));
+    }
+}
+
+/// The disparity that each winner's partner keeps of all offers.
 #[inline(never)]
 pub(in crate::matching::backend) fn keep(
-    costs: &[u8],
-    disparities: &[u8],
+    winners: &WinnerRows<'_>,
+    pixels: Option<[&[u8]; 2]>,
     right: &mut [u16],
     kept: &mut [u8],
 ) {
-    offer(costs, disparities, right);
+    let (costs, disparities) = (&*winners.costs, &*winners.disparities);
+    match pixels {
+        Some([left, of_right]) => {
+            partners(disparities, of_right, kept);
+            compare(costs, left, kept);
+            offer(kept, disparities, right);
+        }
+        None => offer(costs, disparities, right),
+    }
     for (x, (kept, &disparity)) in kept.iter_mut().zip(disparities).enumerate() {
         *kept = consistency::kept(x, disparity, right);
     }

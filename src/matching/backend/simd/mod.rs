@@ -106,12 +106,19 @@ impl Backend {
 
 impl Backend {
     /// The disparity that each winner's partner keeps, with room for a byte more a winner.
-    fn keep(self, winners: &WinnerRows<'_>, candidates: usize, right: &mut [u16], room: [&mut [u8]; 2]) {
+    fn keep(
+        self,
+        winners: &WinnerRows<'_>,
+        pixels: Option<[&[u8]; 2]>,
+        candidates: usize,
+        right: &mut [u16],
+        room: [&mut [u8]; 2],
+    ) {
         match self {
-            Self::Avx512(avx512) => avx512.keep(winners, candidates, right, room),
+            Self::Avx512(avx512) => avx512.keep(winners, pixels, candidates, right, room),
             _ => {
                 let [kept, _] = room;
-                left_right_rows::keep(winners.costs, winners.disparities, right, kept);
+                left_right_rows::keep(winners, pixels, right, kept);
             }
         }
     }
@@ -185,12 +192,12 @@ impl Isa for Backend {
         if self == Self::Planes {
             return plain::Backend.left_right::<P>(work);
         }
-        let AnswerWork { winners, right, workspace, begin, rules, answers, flags } = work;
+        let AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags } = work;
         let width = winners.width();
         let winners = winners.rows(begin);
         let (kept, fractions) = split_mut(view_mut::<u32, u8>(workspace), width);
         let room = [&mut *kept, &mut *fractions].map(|row| part_mut(row, ..winners.costs.len()));
-        self.keep(&winners, usize::from(rules.ceiling) + 1, right, room);
+        self.keep(&winners, pixels, usize::from(rules.ceiling) + 1, right, room);
         self.in_vectors(
             #[inline(always)]
             || left_right_rows::answer::<P>(&winners, kept, rules, fractions, answers, flags),
@@ -312,27 +319,33 @@ mod tests {
         for width in [1, 2, 31, 63, 64, 65, 100, 127, 128, 129, 300] {
             for candidates in [16, 31, 32, 33, 64, 65, 128, 192, 193, 256] {
                 // Few costs, so that many are equal, those that nobody beats among them.
-                let mut costs: Vec<u8> = (0..width).map(|_| [0, 7, 8, 255][chance(4)]).collect();
-                let mut disparities: Vec<u8> =
-                    (0..width).map(|x| chance(candidates.min(x + 1)) as u8).collect();
-                let offered: Vec<_> = costs.iter().zip(&disparities).map(|(&cost, &d)| (cost, d)).collect();
-                let partner = |x: usize| x - usize::from(offered[x].1);
-                let kept = |x: usize| {
-                    let all = (0..width).filter(|&other| partner(other) == partner(x));
-                    all.map(|other| offered[other]).min().map(|(_, disparity)| disparity).unwrap()
-                };
-                let expected: Vec<u8> = (0..width).map(kept).collect();
-                for kernel in Kernel::available() {
-                    let (mut right, mut found, mut room) = (vec![0; width], vec![0; width], vec![0; width]);
-                    let winners = WinnerRows {
-                        below: &mut [],
-                        above: &mut [],
-                        costs: &mut costs,
-                        disparities: &mut disparities,
+                let costs: Vec<u8> = (0..width).map(|_| [0, 7, 8, 255][chance(4)]).collect();
+                let disparities: Vec<u8> = (0..width).map(|x| chance(candidates.min(x + 1)) as u8).collect();
+                let [left, of_right] = [(); 2]
+                    .map(|()| -> Vec<u8> { (0..width).map(|_| [0, 1, 3, 62, 64, 255][chance(6)]).collect() });
+                for pixels in [None, Some([&*left, &*of_right])] {
+                    let partner = |x: usize| x - usize::from(disparities[x]);
+                    let cost = |x: usize| {
+                        let apart = pixels.map_or(0, |[left, right]| left[x].abs_diff(right[partner(x)]));
+                        (u16::from(costs[x]) + 4 * u16::from(apart)).min(255)
                     };
-                    let backend = Backend::of(kernel).unwrap();
-                    backend.keep(&winners, candidates, &mut right, [&mut found, &mut room]);
-                    assert_eq!(found, expected, "{kernel:?}: {width} columns, {candidates} candidates");
+                    let kept = |x: usize| {
+                        let all = (0..width).filter(|&other| partner(other) == partner(x));
+                        let offers = all.map(|other| (cost(other), disparities[other]));
+                        offers.min().map(|(_, disparity)| disparity).unwrap()
+                    };
+                    let expected: Vec<u8> = (0..width).map(kept).collect();
+                    for kernel in Kernel::available() {
+                        let (mut right, mut found, mut room) =
+                            (vec![0; width], vec![0; width], vec![0; width]);
+                        let (mut costs, mut disparities) = (costs.clone(), disparities.clone());
+                        let (costs, disparities) = (&mut *costs, &mut *disparities);
+                        let winners = WinnerRows { below: &mut [], above: &mut [], costs, disparities };
+                        let backend = Backend::of(kernel).unwrap();
+                        backend.keep(&winners, pixels, candidates, &mut right, [&mut found, &mut room]);
+                        let pixels = pixels.is_some();
+                        assert_eq!(found, expected, "{kernel:?}: {width} columns, {candidates}, {pixels}");
+                    }
                 }
             }
         }

@@ -110,17 +110,26 @@ impl Avx512 {
     pub(super) fn keep(
         self,
         winners: &WinnerRows<'_>,
+        pixels: Option<[&[u8]; 2]>,
         candidates: usize,
         right: &mut [u16],
         [kept, of_right]: [&mut [u8]; 2],
     ) {
-        let (costs, disparities) = (&*winners.costs, &*winners.disparities);
         if candidates > widest::MOST {
-            return left_right_rows::keep(costs, disparities, right, kept);
+            return left_right_rows::keep(winners, pixels, right, kept);
         }
+        let disparities = &*winners.disparities;
         self.run(
             #[inline(always)]
             || {
+                let costs = match pixels {
+                    Some([left, of_right]) => {
+                        widest::kept(disparities, candidates, of_right, kept);
+                        left_right_rows::compare(winners.costs, left, kept);
+                        &*kept
+                    }
+                    None => &*winners.costs,
+                };
                 if candidates <= widest::FEW {
                     widest::offer(costs, disparities, candidates, of_right);
                 } else {

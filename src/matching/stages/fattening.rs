@@ -7,12 +7,12 @@
 //! [`fattening_slope`](crate::matching::Checks::fattening_slope) for each pixel between the two: so a slanted
 //! surface stays, and an answer far away refuses nothing.
 //!
-//! What the right camera does not see, left of a near surface, has no answer of its own that could refuse any.
-//! So the surface begins at an edge there: where it follows a farther answer by more than the tolerance and no
-//! edge is near, its rim up to the first edge is refused. A surface without an edge close by stays.
+//! What the right camera does not see, left of a near surface, has no answer of its own that could refuse
+//! one. So a near surface begins at an edge: where it follows a farther answer by more than the tolerance and
+//! no edge is near, its rim up to the first edge is refused. A surface without an edge close by stays.
 //!
 //! An edge is a pixel where Sobel's gradient along the row is large: it looks at three rows, so that noise
-//! makes few of them. The work is the same for every picture.
+//! makes few of them. The work is nearly the same for every picture.
 
 use crate::imaging::Noise;
 use crate::matching::backend::loops::fill_bytes;
@@ -139,24 +139,23 @@ mod tests {
 
     #[test]
     fn a_near_surface_begins_at_its_edge() {
-        // Far, nothing, near from the sixth column on; an edge there, before it, in it, too far in it, nowhere.
-        let row =
-            |x: usize| [(0..4, 320), (4..6, NONE), (6..60, 640)].into_iter().find(|(at, _)| at.contains(&x));
-        let row: [u16; 60] = core::array::from_fn(|x| row(x).map_or(NONE, |(_, raw)| raw));
-        for (edge, refused) in [(6, 0), (4, 0), (7, 1), (9, 3), (38, 32), (39, 0), (3, 0)] {
+        // Far, nothing, near from the seventh column on.
+        let row: [u16; 60] = core::array::from_fn(|x| match x {
+            0..4 => 320,
+            4..6 => NONE,
+            _ => 640,
+        });
+        // The column of the only edge, and how many answers are refused.
+        for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
             let mut answers = row.map(Disparity::from_raw);
             let mut flags = [PixelFlags::CLEAR; 60];
             let mut edges = [0xfe; 60];
             edges[edge] |= 1;
             refuse_rims(&mut answers, &mut flags, &edges, 1);
-            let gone = |x: usize| (6..6 + refused).contains(&x);
             for x in 0..60 {
-                let expected = if gone(x) { NONE } else { row[x] };
-                assert_eq!(
-                    (answers[x].raw(), flags[x]),
-                    (expected, PixelFlags::UNTEXTURED.when(gone(x))),
-                    "{edge}: {x}"
-                );
+                let gone = (6..6 + refused).contains(&x);
+                let expected = (if gone { NONE } else { row[x] }, PixelFlags::UNTEXTURED.when(gone));
+                assert_eq!((answers[x].raw(), flags[x]), expected, "{edge}: {x}");
             }
         }
     }

@@ -1,10 +1,11 @@
 //! Winners become answers with flags: the left-right check, the fraction of a pixel, and what refuses an
 //! answer.
 //!
-//! Each column of the right image keeps the cheapest of the left pixels that chose it. A left pixel whose
-//! disparity is far from what its partner kept was beaten there: it is occluded or wrong. Nothing is searched
-//! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
-//! own winners. The work is the same for every row.
+//! Each column of the right image keeps the cheapest of the left pixels that chose it; in the methods along
+//! paths what the two pixels differ by counts as well. A left pixel whose disparity is far from what its
+//! partner kept was beaten there: it is occluded or wrong. Nothing is searched a second time, and on real
+//! pairs the check refuses fewer right answers than one against the right image's own winners. The work is
+//! the same for every row.
 
 use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
@@ -46,16 +47,23 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize, line
     } else {
         let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
         let (answers, flags) = (&mut *answers, &mut *flags);
-        let pixels = lines.filter(|_| S::COMPARES_PIXELS).map(|lines| {
-            // The last one of the lines that are in is two rows below the middle one.
-            let [left, of_right] =
-                lines.map(|lines| lines.get(2 - S::RADIUS_Y.min(2)).copied().unwrap_or_default());
-            [part(left, begin..width), part(of_right, ..width - begin)]
-        });
+        let pixels = compared::<S>(lines, begin, width);
         let work = AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags };
         frame.backend.left_right::<S>(work);
     }
     flag_first_column(config, answers, flags);
+}
+
+/// Of a method that compares the pixels of an offer, the left image's row from column `begin` on, and as much
+/// of the right one's: that of the row whose answers are made. Below the image nothing is in.
+pub(super) fn compared<'a, S: Method>(
+    lines: Option<[&Rows5<'a>; 2]>,
+    begin: usize,
+    width: usize,
+) -> Option<[&'a [u8]; 2]> {
+    let lines = lines.filter(|_| S::COMPARES_PIXELS)?;
+    let [left, right] = lines.map(|lines| lines.get(2usize.wrapping_sub(S::RADIUS_Y)).copied());
+    Some([part(left?, begin..width), part(right?, ..width - begin)])
 }
 
 /// Flags the answers whose partner is the first column of the right image: of the candidates inside that

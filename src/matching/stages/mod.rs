@@ -154,7 +154,7 @@ fn finish_row<S: Method, const MOST: usize>(
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);
         #[cfg(feature = "trace")]
-        traced::winners::<S>(frame, newest);
+        traced::winners::<S>(frame, newest, lines);
         left_right::make_answers::<S>(frame, newest, lines);
         #[cfg(feature = "trace")]
         traced::subpixel(frame, newest);

@@ -1,6 +1,8 @@
 //! Rows shown as stages leave them, where somebody takes them.
 
+use super::left_right::compared;
 use crate::matching::backend::Isa;
+use crate::matching::memory::Rows5;
 use crate::matching::memory::record::WinnerRecord;
 use crate::matching::memory::rings::{LOOK_AHEAD, waiting};
 use crate::matching::memory::workspace::ForAnswers;
@@ -9,7 +11,7 @@ use crate::matching::trace::TracedStage;
 
 /// Shows the winners of `newest`, before answers are made of them. What partners keep is worked out in the
 /// place where the left-right check works it out again.
-pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize) {
+pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize, lines: Option<[&Rows5<'_>; 2]>) {
     let Some(trace) = &mut frame.trace else { return };
     if S::EXTERNAL_WINNERS {
         return;
@@ -22,10 +24,15 @@ pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         let at = |part: usize| if in_words { 4 * x + part } else { part * width + x };
         [0, 1, 2, 3].map(|part| bytes.get(at(part)).copied().unwrap_or_default())
     };
+    let pixels = compared::<S>(lines, begin, width);
     right.fill(u16::MAX);
     for x in begin..width {
         let [_, cost, _, disparity] = winner(x);
-        if let Some(kept) = right.get_mut((x - begin).wrapping_sub(disparity.into())) {
+        let partner = (x - begin).wrapping_sub(disparity.into());
+        let apart =
+            pixels.and_then(|[left, right]| Some(left.get(x - begin)?.abs_diff(*right.get(partner)?)));
+        let cost = cost.saturating_add(apart.unwrap_or(0).saturating_mul(4));
+        if let Some(kept) = right.get_mut(partner) {
             *kept = u16::from_be_bytes([cost, disparity]).min(*kept);
         }
     }

@@ -24,9 +24,9 @@ pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16])
     }
 }
 
-/// What an offer costs where the pixels are compared: the winner's cost, and four times what the two pixels
-/// differ by. Costs along paths are those of a surface: left of a near one they make the pixels cheap that
-/// the right camera does not see. What these look like tells them from the partner's own.
+/// An offer whose pixels are compared: the winner's key, whose cost is more by four times what the two pixels
+/// differ by, 255 at most. Costs along paths are those of a surface: left of a near one they make pixels
+/// cheap that the right camera does not see. What these look like tells them from those it sees.
 #[inline(always)]
 pub(super) fn compared(key: u32, left: i32, partner: i32) -> u32 {
     (key + ((left - partner).unsigned_abs() << 10)).min(key | 0xff00)

@@ -21,7 +21,14 @@ impl Avx2 {
         match self {}
     }
 
-    pub(super) fn keep(self, _: &WinnerRows<'_>, _: usize, _: &mut [u16], _: [&mut [u8]; 2]) {
+    pub(super) fn keep(
+        self,
+        _: &WinnerRows<'_>,
+        _: Option<[&[u8]; 2]>,
+        _: usize,
+        _: &mut [u16],
+        _: [&mut [u8]; 2],
+    ) {
         match self {}
     }
 

@@ -80,6 +80,9 @@ module stereo_block #(
     wire restarts = reset || forget;
     wire forgets = restarts || aborts;
 
+    // verilator lint_off UNUSEDSIGNAL
+    wire has_last;
+    // verilator lint_on UNUSEDSIGNAL
     stereo_walk #(
         .WIDTH(WIDTH),
         .DEPTH(AHEAD + LEVELS + LATER + 13),
@@ -99,7 +102,7 @@ module stereo_block #(
         .next_column(next_column), .valid(valid), .pixels(pixels), .column(column), .group(group),
         .first_group(first_group), .last_group(last_group), .inside_width(inside_width),
         .inside_height(inside_height), .first_line(first_line), .first_code(first_code), .enters(enters),
-        .leaves(leaves), .code_row(code_row), .has_winners(has_winners), .row(row), .drains(drains)
+        .leaves(leaves), .code_row(code_row), .has_last(has_last), .has_winners(has_winners), .row(row), .drains(drains)
     );
 
     wire [BITS-1:0] left_code;
@@ -186,7 +189,7 @@ module stereo_block #(
         .first_group(late[LATE-2]), .last_group(late[LATE-1]),
         .moves(valid && last_group && (is_pixel || drains)), .is_pixel(is_pixel),
         .is_first(row == 0 && column == 7), .is_last(column == width + SIX), .row(row[7:0]),
-        .record_valid(m_axis_tvalid), .record_ready(m_axis_tready), .record(m_axis_tdata),
+        .compares(1'b0), .pixels(16'b0), .record_valid(m_axis_tvalid), .record_ready(m_axis_tready), .record(m_axis_tdata),
         .record_first(m_axis_tuser), .record_last(m_axis_tlast), .go(go)
     );
 

@@ -35,7 +35,9 @@ module stereo_features #(
     // Right: census, brightness, Y, the greatest X, the least one.
     output reg [29:0] right,
     // The left image's brightness, smoothed if that is asked for.
-    output reg [7:0] guide
+    output reg [7:0] guide,
+    // The left pixel and the right one two rows further up.
+    output reg [15:0] highest
 );
     wire [79:0] rows;
     wire moved, moved_first, moved_inside;
@@ -91,6 +93,7 @@ module stereo_features #(
     wire [24:0] lefts;
     wire [29:0] rights;
     wire [7:0] guides;
+    wire [15:0] top_pixels;
     genvar i;
     generate
         for (i = 0; i < 2; i = i + 1) begin : camera
@@ -143,6 +146,7 @@ module stereo_features #(
             reg [7:0] codes;
             // verilator lint_off UNUSEDSIGNAL
             reg [7:0] pixel;
+            reg [7:0] top_pixel;
             // verilator lint_on UNUSEDSIGNAL
             always @(posedge clk) begin
                 if (go && moved_2) begin
@@ -156,10 +160,12 @@ module stereo_features #(
                         {bottoms[71:64], bottoms[39:32], bottoms[7:0]}
                     );
                     pixel <= middles[39:32];
+                    top_pixel <= tops[39:32];
                 end
             end
 
             wire [4:0] here = xs[19:15];
+            assign top_pixels[8*(1-i) +: 8] = top_pixel;
             if (i == 0) begin : is_left
                 assign lefts = {codes, pixel[7:1], ys[19:15], here};
                 assign guides = pixel;
@@ -185,6 +191,7 @@ module stereo_features #(
             left <= lefts;
             right <= rights;
             guide <= guides;
+            highest <= top_pixels;
         end
     end
 endmodule

@@ -28,6 +28,12 @@ module stereo_left_right #(
     input wire [7:0] below,
     input wire [7:0] above,
     input wire [7:0] second,
+    // Whether an offer also costs four times what its pixels differ by, at most 255 in all; the smallest
+    // disparity, and the column's left pixel and right one.
+    input wire compares,
+    input wire [7:0] least,
+    input wire [7:0] left,
+    input wire [7:0] right,
     // A record: first and last of a frame and of a row, and its eight bytes.
     output reg record_valid,
     output reg [65:0] record
@@ -59,18 +65,39 @@ module stereo_left_right #(
         end
     end
 
+    // The right pixels, each where the column looks for it whose smallest disparity leads there, and what the
+    // pixel offers.
+    reg [7:0] rights [0:511];
+    reg [8:0] place, own_place;
+    reg [7:0] own_left;
+    reg has_pixels;
+    always @(posedge clk) begin
+        if (reset || begins) place <= 0;
+        else if (go && valid) place <= place + 1'b1;
+        if (go && valid) rights[place + {1'b0, least}] <= right;
+        if (go) begin
+            own_place <= place;
+            own_left <= left;
+            has_pixels <= compares;
+        end
+    end
+    wire [7:0] of_partner = rights[own_place - {1'b0, pixel[31:24]}];
+    wire [7:0] apart = own_left > of_partner ? own_left - of_partner : of_partner - own_left;
+    wire [10:0] dear = {3'b0, pixel[15:8]} + {1'b0, apart, 2'b0};
+    wire [7:0] offer = !has_pixels ? pixel[15:8] : dear[10:8] != 0 ? 8'hff : dear[7:0];
+
     // What each slot's right column keeps.
     reg [SLOTS-1:0] taken;
     reg [7:0] kept_costs [0:SLOTS-1];
     reg [7:0] kept_disparities [0:SLOTS-1];
     // The pixel's own slot is a new column, which nobody has chosen yet.
     wire is_free = chooses_own || !taken[chosen];
-    wire keeps = moves && chooses && (is_free || pixel[15:8] < kept_costs[chosen]);
+    wire keeps = moves && chooses && (is_free || offer < kept_costs[chosen]);
 
     reg [DISPARITIES-1:0] pixels;
     always @(posedge clk) begin
         if (go && keeps) begin
-            kept_costs[chosen] <= pixel[15:8];
+            kept_costs[chosen] <= offer;
             kept_disparities[chosen] <= pixel[31:24];
         end
         if (reset || begins) begin

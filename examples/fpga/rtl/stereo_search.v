@@ -19,7 +19,9 @@ module stereo_search #(
     // Clocks that what is said of a pixel comes before its sums.
     parameter AHEAD = 8,
     // Clocks from a winner to its second best; 0 where none is sought.
-    parameter LATER = 0
+    parameter LATER = 0,
+    // Whether the pixels of an offer may be compared.
+    parameter COMPARES = 0
 ) (
     input wire clk,
     // All that is under way is to be forgotten.
@@ -41,6 +43,10 @@ module stereo_search #(
     input wire is_first,
     input wire is_last,
     input wire [7:0] row,
+    // Whether what the left pixel and the right one differ by counts in the left-right check, and the pixels of
+    // the column, five clocks later.
+    input wire compares,
+    input wire [15:0] pixels,
     // Records: first and last of a frame and of a row.
     output wire record_valid,
     input wire record_ready,
@@ -51,7 +57,7 @@ module stereo_search #(
 );
     localparam SLOT_BITS = $clog2(2 * DISPARITIES);
     localparam WINNER = AHEAD + LEVELS + 3;
-    localparam SAID = 11;
+    localparam SAID = 12;
 
     // The largest candidate that there is at the column; left of the smallest disparity there is none.
     wire [COLUMN_BITS-1:0] wide_least = {{(COLUMN_BITS-8){1'b0}}, least};
@@ -75,13 +81,26 @@ module stereo_search #(
         if (forgets) steps <= 0;
         else if (go) steps <= {steps[WINNER-2:0], moves};
         if (go) begin
-            said <= {said[SAID*(WINNER-1)-1:0], is_pixel, is_first, is_last, row};
+            said <= {said[SAID*(WINNER-1)-1:0], compares, is_pixel, is_first, is_last, row};
             reached <= {reached[LEVELS+1:0], is_reached};
         end
     end
 
-    localparam TELLER = SAID + 33;
-    wire [TELLER-1:0] found = {reached[LEVELS+2], said[SAID*WINNER-1 -: SAID], best, cost, below, above};
+    wire [15:0] seen;
+    generate
+        if (COMPARES == 0) begin : no_pixels
+            assign seen = pixels;
+        end else begin : with_pixels
+            stereo_delay #(.BITS(16), .CLOCKS(WINNER - 5)) columns (
+                .clk(clk), .reset(forgets), .go(go), .data(pixels), .delayed(seen)
+            );
+        end
+    endgenerate
+
+    localparam TELLER = SAID + 49;
+    wire [TELLER-1:0] found = {
+        seen, reached[LEVELS+2], said[SAID*WINNER-1 -: SAID], best, cost, below, above
+    };
     wire told;
     wire [TELLER-1:0] teller;
     wire [7:0] second;
@@ -116,7 +135,8 @@ module stereo_search #(
 
     stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
         .clk(clk), .reset(forgets), .go(go), .begins(begins), .disparities(disparities[SLOT_BITS-1:0]),
-        .valid(told), .is_pixel(teller[42]), .has_winner(teller[43]), .is_first(teller[41]),
+        .valid(told), .compares(teller[43]), .least(least), .left(teller[60:53]), .right(teller[52:45]), .is_pixel(teller[42]),
+        .has_winner(teller[44]), .is_first(teller[41]),
         .is_last(teller[40]), .row(teller[39:32]), .best(teller[31:24]), .cost(teller[23:16]),
         .below(teller[15:8]), .above(teller[7:0]), .second(second), .record_valid(made), .record(made_record)
     );

@@ -64,7 +64,7 @@ module stereo_sgm #(
     wire [7:0] set_disparities, disparities, set_least, least;
     wire [1:0] set_noise, noise;
     wire valid, first_group, last_group, inside_width, inside_height, first_line;
-    wire first_code, enters, has_winners, drains;
+    wire first_code, enters, has_winners, has_last, drains;
     // verilator lint_off UNUSEDSIGNAL
     wire leaves;
     wire [CODE_BITS-1:0] code_row;
@@ -96,17 +96,18 @@ module stereo_sgm #(
         .next_column(next_column), .valid(valid), .pixels(pixels), .column(column), .group(group),
         .first_group(first_group), .last_group(last_group), .inside_width(inside_width),
         .inside_height(inside_height), .first_line(first_line), .first_code(first_code), .enters(enters),
-        .leaves(leaves), .code_row(code_row), .has_winners(has_winners), .row(row), .drains(drains)
+        .leaves(leaves), .code_row(code_row), .has_winners(has_winners), .has_last(has_last), .row(row), .drains(drains)
     );
 
     wire [24:0] left;
     wire [29:0] right;
     wire [7:0] guide;
+    wire [15:0] highest;
 
     stereo_features #(.WIDTH(WIDTH), .COLUMN_BITS(COLUMN_BITS), .ADDRESS_BITS(ADDRESS_BITS)) features (
         .clk(clk), .go(go), .noise(noise), .width(width), .next_column(next_column), .valid(valid),
         .pixels(pixels), .column(column), .first_group(first_group), .inside_width(inside_width),
-        .inside_height(inside_height), .first_line(first_line), .left(left), .right(right), .guide(guide)
+        .inside_height(inside_height), .first_line(first_line), .left(left), .right(right), .guide(guide), .highest(highest)
     );
 
     // Where the sweeps are.
@@ -173,7 +174,7 @@ module stereo_sgm #(
 
     stereo_search #(
         .DISPARITIES(DISPARITIES), .PARALLEL(PARALLEL), .SECOND_BEST(SECOND_BEST), .COLUMN_BITS(COLUMN_BITS),
-        .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER)
+        .GROUP_BITS(GROUP_BITS), .LEVELS(LEVELS), .AHEAD(AHEAD), .LATER(LATER), .COMPARES(1)
     ) search (
         .clk(clk), .forgets(forgets), .begins(begins), .disparities(disparities), .least(least),
         .sums(sums), .valid(valids[AHEAD-1] && late[LATE-1]), .column(late[GROUP_BITS +: COLUMN_BITS]),
@@ -181,6 +182,7 @@ module stereo_sgm #(
         // The second sweep brings the row's last winners out of the left-right check.
         .moves(valid && last_group), .is_pixel(has_winners && is_forth),
         .is_first(row == 0 && column == FIVE), .is_last(column == width + FOUR), .row(row[7:0]),
+        .compares(noise == 0 && !has_last), .pixels(highest),
         .record_valid(m_axis_tvalid), .record_ready(m_axis_tready), .record(m_axis_tdata),
         .record_first(m_axis_tuser), .record_last(m_axis_tlast), .go(go)
     );

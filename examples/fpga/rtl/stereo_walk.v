@@ -66,6 +66,8 @@ module stereo_walk #(
     output reg leaves,
     output reg [CODE_BITS-1:0] code_row,
     output reg has_winners,
+    // Whether they are the frame's last.
+    output reg has_last,
     output reg [15:0] row,
     output reg drains
 );
@@ -166,6 +168,7 @@ module stereo_walk #(
             leaves <= step >= {1'b0, WINDOW} + 17'd2;
             code_row <= at_code_row;
             has_winners <= step >= {1'b0, BELOW} && !draining;
+            has_last <= step == {1'b0, height} + {1'b0, BELOW} - 17'd1;
             row <= step[15:0] - BELOW;
             drains <= draining;
         end

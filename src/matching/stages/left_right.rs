@@ -7,6 +7,7 @@
 //! pairs the check refuses fewer right answers than one against the right image's own winners. The work is
 //! the same for every row.
 
+use crate::imaging::Noise;
 use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
 use crate::matching::config::Config;
@@ -47,7 +48,7 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize, line
     } else {
         let ForAnswers { winners, right, workspace } = frame.workspace.for_answers();
         let (answers, flags) = (&mut *answers, &mut *flags);
-        let pixels = compared::<S>(lines, begin, width);
+        let pixels = compared::<S>(config, lines, begin, width);
         let work = AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags };
         frame.backend.left_right::<S>(work);
     }
@@ -57,11 +58,12 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize, line
 /// Of a method that compares the pixels of an offer, the left image's row from column `begin` on, and as much
 /// of the right one's: that of the row whose answers are made. Below the image nothing is in.
 pub(super) fn compared<'a, S: Method>(
+    config: &Config,
     lines: Option<[&Rows5<'a>; 2]>,
     begin: usize,
     width: usize,
 ) -> Option<[&'a [u8]; 2]> {
-    let lines = lines.filter(|_| S::COMPARES_PIXELS)?;
+    let lines = lines.filter(|_| S::COMPARES_PIXELS && config.noise == Noise::None)?;
     let [left, right] = lines.map(|lines| lines.get(2usize.wrapping_sub(S::RADIUS_Y)).copied());
     Some([part(left?, begin..width), part(right?, ..width - begin)])
 }

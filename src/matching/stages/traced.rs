@@ -24,7 +24,7 @@ pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize, lines: Op
         let at = |part: usize| if in_words { 4 * x + part } else { part * width + x };
         [0, 1, 2, 3].map(|part| bytes.get(at(part)).copied().unwrap_or_default())
     };
-    let pixels = compared::<S>(lines, begin, width);
+    let pixels = compared::<S>(frame.config, lines, begin, width);
     right.fill(u16::MAX);
     for x in begin..width {
         let [_, cost, _, disparity] = winner(x);

@@ -2,6 +2,7 @@
 
 use super::cost::Volume;
 use super::{Cost, Method, Picture};
+use stereopsis::imaging::Noise;
 use stereopsis::matching::{Checks, Config, WinnerRecord};
 use stereopsis::units::{Disparity, PixelFlags};
 
@@ -31,7 +32,7 @@ pub(super) fn select_row(
     };
     let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
     let held =
-        held_by_right_columns(&winners, |x, winner| offer(scheme, pair, smallest, (x, y), winner), smallest);
+        held_by_right_columns(&winners, |x, winner| offer(scheme, config, pair, (x, y), winner), smallest);
 
     let mut disparities = vec![Disparity::NONE; sums.width];
     let mut flags = vec![PixelFlags::CLEAR; sums.width];
@@ -90,7 +91,7 @@ pub(super) fn records(
     };
     let winners: Vec<Option<Winner>> = (0..sums.width).map(|x| winner(candidates(x))).collect();
     let held =
-        held_by_right_columns(&winners, |x, winner| offer(scheme, pair, smallest, (x, y), winner), smallest);
+        held_by_right_columns(&winners, |x, winner| offer(scheme, config, pair, (x, y), winner), smallest);
     let record = |(x, winner): (usize, &Option<Winner>)| {
         let Some(best) = winner else { return WinnerRecord::ZERO.sealed(y as u16) };
         let costs = candidates(x);
@@ -116,13 +117,16 @@ fn winner(candidates: &[u16]) -> Option<Winner> {
 /// what the two pixels differ by, as long as a row below tells both; at most 255.
 fn offer(
     scheme: &Method,
+    config: &Config,
     pair: [&Picture<'_>; 2],
-    smallest: usize,
     (x, y): (usize, usize),
     winner: Winner,
 ) -> u16 {
     let [left, right] = pair;
-    let is_compared = matches!(scheme.cost, Cost::Paths { .. }) && y + scheme.radius_y < left.height;
+    let smallest = usize::from(config.min_disparity);
+    let is_quiet = config.noise == Noise::None;
+    let is_compared =
+        is_quiet && matches!(scheme.cost, Cost::Paths { .. }) && y + scheme.radius_y < left.height;
     let partner = x - smallest - winner.d;
     let apart = left.at(x as isize, y as isize).abs_diff(right.at(partner as isize, y as isize));
     if is_compared { (winner.cost + 4 * u16::from(apart)).min(255) } else { winner.cost }

@@ -49,6 +49,8 @@ use super::kernel::Kernel;
 pub(super) use isa::Isa;
 pub use parameters::MethodParameters;
 pub(super) use parameters::{SgmParameters, WindowParameters};
+#[cfg(feature = "trace")]
+pub(super) use portable::consistency::compared_cost;
 pub(super) use portable::left_right::answer_records;
 pub(super) use portable::smooth::MARGIN as SMOOTH_MARGIN;
 pub(super) use target::{BY_CAPACITY, Backend, CODES_SHARE_A_BYTE, columns_begin};

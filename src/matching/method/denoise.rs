@@ -16,28 +16,30 @@ pub(super) const fn gradient_shift(noise: Noise) -> u32 {
     }
 }
 
-/// Smooths `rows` of the lines of both images, each in one of the places.
+/// The lines of both images, smoothed where `rows` says so, each in one of the places.
 pub(super) fn denoise<'a>(
-    lines: &mut [Rows5<'a>; 2],
+    lines: [&Rows5<'a>; 2],
+    smoothed: &mut [Rows5<'a>; 2],
     rows: &[usize],
     mut places: impl Iterator<Item = &'a mut [u8]>,
 ) {
-    for lines in lines {
-        denoise_lines(lines, rows, &mut places);
+    for (lines, smoothed) in lines.into_iter().zip(smoothed) {
+        denoise_lines(lines, smoothed, rows, &mut places);
     }
 }
 
 /// Denoised lines of one image.
 #[cfg_attr(not(stereopsis_simd), inline(never))]
 fn denoise_lines<'a>(
+    lines: &Rows5<'a>,
     smoothed: &mut Rows5<'a>,
     rows: &[usize],
     places: &mut impl Iterator<Item = &'a mut [u8]>,
 ) {
-    let lines = *smoothed;
+    *smoothed = *lines;
     for &row in rows {
         if let (Some(to), Some(place)) = (smoothed.get_mut(row), places.next()) {
-            smooth(&lines, row, place);
+            smooth(lines, row, place);
             *to = place;
         }
     }

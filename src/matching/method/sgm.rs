@@ -223,21 +223,24 @@ fn select<S: SgmParameters, const MOST: usize>(
     };
     let guide = |y: usize| slot(frame.codes, y % guides::<S>(), width);
     let has_noise = config.noise != Noise::None;
-    let mut seen: [Rows5<'_>; 2] = [[&[]; 5]; 2];
-    if let Some([left, right]) = lines {
-        seen = [*left, *right];
-        if has_noise {
-            // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
-            denoise(&mut seen, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
+    let mut smoothed = [[&[][..]; 5]; 2];
+    let seen = lines.map(|lines| {
+        if !has_noise {
+            return lines;
         }
-        let (lines, workspace) = (seen.each_ref(), view_mut::<u32, u8>(frame.workspace.costs()));
+        // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
+        denoise(lines, &mut smoothed, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
+        smoothed.each_ref()
+    });
+    if let Some(lines) = seen {
+        let workspace = view_mut::<u32, u8>(frame.workspace.costs());
         frame.backend.sgm_cost::<S, MOST>(&mut work, CostWork { is_first: bottom == 0, lines, workspace });
     }
     if S::WITHIN_EDGES {
         let (above, below) = split_mut(rest, width * stride);
         let inside = |y: &usize| *y < usize::from(config.height);
         let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
-        let guides = [here, next, lines.map(|_| seen[0][2])];
+        let guides = [here, next, seen.map(|[left, _]| left[2])];
         frame.backend.sgm_within_edges::<MOST>(&mut work, EdgeWork { guides, above, below });
     }
     // The features are done with, and the smoothed lines.

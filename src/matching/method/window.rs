@@ -124,7 +124,8 @@ impl WindowParameters for Block {
 /// Turns the lines around row `y` into its codes.
 fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_>; 2]) {
     let row = row_mut(frame.codes, y % rows::<S>(), code_bytes::<S>() * frame.width);
-    let (mut smoothed, workspace);
+    let mut smoothed = [[&[][..]; 5]; 2];
+    let workspace;
     let lines = if frame.config.noise == Noise::None {
         workspace = frame.workspace.costs();
         lines
@@ -132,9 +133,7 @@ fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_
         // Codes look at three rows of the five.
         let places;
         (places, workspace) = frame.workspace.smoothed_lines(frame.width);
-        let [left, right] = lines;
-        smoothed = [*left, *right];
-        denoise(&mut smoothed, &[0, 2, 4], places);
+        denoise(lines, &mut smoothed, &[0, 2, 4], places);
         smoothed.each_ref()
     };
     let min_disparity = usize::from(frame.config.min_disparity);

@@ -15,7 +15,7 @@
 //! makes few of them. The work is nearly the same for every picture.
 
 use crate::imaging::Noise;
-use crate::matching::backend::loops::fill_bytes;
+use crate::matching::backend::loops::{fill_bytes, keep_scalar_loop};
 use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
@@ -97,15 +97,18 @@ fn refuse_rims(answers: &mut [Disparity], flags: &mut [PixelFlags], edges: &[u8]
 // Surfaces are few: most columns begin none.
 #[inline(never)]
 fn refuse_rim(answers: &[Cell<Disparity>], flags: &mut [PixelFlags], edges: &[u8], row: u8, x: usize) {
-    let is_edge = |edges: &u8| edges & row != 0;
-    let (to_here, after) = edges.split_at_checked(x + 1).unwrap_or_default();
-    let mut beside = to_here.iter().rev().take(BESIDE + 1);
-    let first = after.iter().take(WIDEST_RIM).position(is_edge);
-    if let (false, Some(first)) = (beside.any(is_edge), first) {
-        for (answer, flags) in part(answers, x..).iter().zip(part_mut(flags, x..)).take(first + 1) {
-            *flags = flags.union(PixelFlags::UNTEXTURED.when(answer.get().is_some()));
-            answer.set(Disparity::NONE);
-        }
+    let is_edge = |edges: &u8| {
+        keep_scalar_loop();
+        edges & row != 0
+    };
+    if part(edges, x.saturating_sub(BESIDE)..x + 1).iter().any(is_edge) {
+        return;
+    }
+    let Some(width) = part(edges, x..).iter().take(WIDEST_RIM + 1).position(is_edge) else { return };
+    for (answer, flags) in part(answers, x..).iter().zip(part_mut(flags, x..)).take(width) {
+        keep_scalar_loop();
+        *flags = flags.union(PixelFlags::UNTEXTURED.when(answer.get().is_some()));
+        answer.set(Disparity::NONE);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Rows shown as stages leave them, where somebody takes them.
 
 use super::left_right::compared;
-use crate::matching::backend::Isa;
+use crate::matching::backend::{Isa, compared_cost};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::record::WinnerRecord;
 use crate::matching::memory::rings::{LOOK_AHEAD, waiting};
@@ -29,9 +29,8 @@ pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize, lines: Op
     for x in begin..width {
         let [_, cost, _, disparity] = winner(x);
         let partner = (x - begin).wrapping_sub(disparity.into());
-        let apart =
-            pixels.and_then(|[left, right]| Some(left.get(x - begin)?.abs_diff(*right.get(partner)?)));
-        let cost = cost.saturating_add(apart.unwrap_or(0).saturating_mul(4));
+        let pair = pixels.and_then(|[left, right]| Some((*left.get(x - begin)?, *right.get(partner)?)));
+        let cost = pair.map_or(cost, |(left, right)| compared_cost(cost, left, right));
         if let Some(kept) = right.get_mut(partner) {
             *kept = u16::from_be_bytes([cost, disparity]).min(*kept);
         }

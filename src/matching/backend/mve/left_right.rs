@@ -25,8 +25,8 @@ pub(super) fn keep(winners: &WinnerRows<'_>, pixels: Option<[&[u8]; 2]>, right: 
     look(disparities, right, kept);
 }
 
-/// The costs of offers whose pixels are compared, for slices of one length: fifteen instructions for eight
-/// pixels.
+/// The costs of offers whose pixels are compared, for slices of one length: thirteen instructions for
+/// eight pixels.
 fn compare(costs: &[u8], disparities: &[u8], [left, of_right]: [&[u8]; 2], offers: &mut [u8]) {
     // SAFETY: as for `offer`; the pixel of `of_right` that is read has the number of the partner.
     unsafe {

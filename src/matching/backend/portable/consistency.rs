@@ -24,12 +24,13 @@ pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16])
     }
 }
 
-/// An offer whose pixels are compared: the winner's key, whose cost is more by four times what the two pixels
-/// differ by, 255 at most. Costs along paths are those of a surface: left of a near one they make pixels
-/// cheap that the right camera does not see. What these look like tells them from those it sees.
+/// The cost of an offer whose pixels are compared: the winner's and four times what the two pixels differ by,
+/// 255 at most. Costs along paths are those of a surface: left of a near one they make pixels cheap that the
+/// right camera does not see. What these look like tells them from those it sees.
 #[inline(always)]
-pub(super) fn compared(key: u32, left: i32, partner: i32) -> u32 {
-    (key + ((left - partner).unsigned_abs() << 10)).min(key | 0xff00)
+pub(in crate::matching) fn compared_cost(cost: u8, left: u8, partner: u8) -> u8 {
+    let apart = (i32::from(left) - i32::from(partner)).unsigned_abs();
+    (u32::from(cost) + 4 * apart).min(255) as u8
 }
 
 /// The disparity that the partner of winner `x` keeps.

@@ -38,7 +38,8 @@ fn offer_compared(winners: &[Winner], [left, of_right]: [&[u8]; 2], right: &mut 
         let disparity = winner.disparity();
         let partner = x.wrapping_sub(disparity as usize);
         if let (Some(kept), Some(&partner)) = (right.get_mut(partner), of_right.get(partner)) {
-            let offer = consistency::compared(winner.key(), left.into(), partner.into());
+            let [_, _, cost, _] = winner.key().to_be_bytes();
+            let offer = u32::from(consistency::compared_cost(cost, left, partner)) << 8 | disparity;
             if offer < u32::from(*kept) {
                 *kept = offer as u16;
             }

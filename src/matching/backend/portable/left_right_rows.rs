@@ -22,13 +22,11 @@ pub(in crate::matching::backend) fn partners(disparities: &[u8], of_right: &[u8]
     }
 }
 
-/// Makes offers of the pixels that are their partners: [`consistency::compared`].
+/// Makes offers of the pixels that are their partners: [`consistency::compared_cost`].
 #[inline(always)]
 pub(in crate::matching::backend) fn compare(costs: &[u8], left: &[u8], partners: &mut [u8]) {
     for ((partner, &cost), &left) in partners.iter_mut().zip(costs).zip(left) {
-        let apart = left.abs_diff(*partner);
-        *partner =
-            cost.saturating_add(apart.saturating_add(apart).saturating_add(apart.saturating_add(apart)));
+        *partner = consistency::compared_cost(cost, left, *partner);
     }
 }
 

@@ -10,7 +10,7 @@
 
 pub(super) mod candidates;
 pub(super) mod census;
-mod consistency;
+pub(super) mod consistency;
 pub(super) mod edges;
 pub(super) mod fattening;
 pub(super) mod fill;

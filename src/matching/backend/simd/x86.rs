@@ -123,8 +123,8 @@ impl Avx512 {
             #[inline(always)]
             || {
                 let costs = match pixels {
-                    Some([left, of_right]) => {
-                        widest::kept(disparities, candidates, of_right, kept);
+                    Some([left, partners]) => {
+                        widest::kept(disparities, candidates, partners, kept);
                         left_right_rows::compare(winners.costs, left, kept);
                         &*kept
                     }

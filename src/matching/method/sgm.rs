@@ -131,7 +131,7 @@ const DEFAULT_IN_NOISE: [Checks; 2] = [
 /// Checks that refuse most where another disparity costs little more; texture says less than that, for paths
 /// bridge what has none. Where the image is open it takes more than that.
 const STRICT: Checks = Checks {
-    uniqueness_percent: Some(16),
+    uniqueness_percent: Some(14),
     open_margin: 52,
     refuse_repeats: true,
     speckle_pixels: 36,

@@ -7,21 +7,15 @@
 //! [`fattening_slope`](crate::matching::Checks::fattening_slope) for each pixel between the two: so a slanted
 //! surface stays, and an answer far away refuses nothing.
 //!
-//! What the right camera does not see, left of a near surface, has no answer of its own that could refuse
-//! one. So a near surface begins at an edge: where it follows a farther answer by more than the tolerance and
-//! no edge is near, its rim up to the first edge is refused. A surface without an edge close by stays.
-//!
 //! An edge is a pixel where Sobel's gradient along the row is large: it looks at three rows, so that noise
-//! makes few of them. The work is nearly the same for every picture.
+//! makes few of them. The work is the same for every picture.
 
 use crate::imaging::Noise;
-use crate::matching::backend::loops::{fill_bytes, keep_scalar_loop};
+use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::part;
 use crate::matching::method::Frame;
-use crate::units::{Disparity, PixelFlags};
-use core::cell::Cell;
 
 /// The least Sobel gradient of an edge, eighths of a grey level per pixel: about three deviations of what
 /// noise makes.
@@ -60,55 +54,7 @@ pub(super) fn refuse_fattening<S: MethodParameters>(frame: &mut Frame<'_>, newes
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         let edges = &mut *frame.edges;
         let row = 1 << S::RADIUS_Y;
-        let work =
-            FatteningWork { answers: &mut *answers, flags: &mut *flags, edges: &mut *edges, row, slope };
-        frame.backend.refuse_fattening(work);
-        // Noise hides edges that a surface begins at.
-        if frame.config.noise == Noise::None {
-            refuse_rims(answers, flags, edges, row);
-        }
-    }
-}
-
-/// Columns before a surface's first answer in which an edge may be that it begins at.
-const BESIDE: usize = 2;
-/// Most columns of a rim.
-const WIDEST_RIM: usize = 32;
-
-/// Refuses the rims of surfaces: an edge is where `row` is set.
-#[inline(never)]
-fn refuse_rims(answers: &mut [Disparity], flags: &mut [PixelFlags], edges: &[u8], row: u8) {
-    let answers = Cell::from_mut(answers).as_slice_of_cells();
-    // No answer is nearer than what stands before the row.
-    let mut before = i32::from(i16::MAX);
-    let mut from_here = answers;
-    while let Some((answer, after)) = from_here.split_first() {
-        // No answer is less than any: -1.
-        let here = i32::from(answer.get().raw() as i16);
-        if here - before > i32::from(FatteningWork::TOLERANCE) {
-            refuse_rim(answers, flags, edges, row, answers.len() - from_here.len());
-        }
-        before = if here < 0 { before } else { here };
-        from_here = after;
-    }
-}
-
-/// Refuses the rim of a surface that begins in column `x`.
-// Surfaces are few: most columns begin none.
-#[inline(never)]
-fn refuse_rim(answers: &[Cell<Disparity>], flags: &mut [PixelFlags], edges: &[u8], row: u8, x: usize) {
-    let is_edge = |edges: &u8| {
-        keep_scalar_loop();
-        edges & row != 0
-    };
-    if part(edges, x.saturating_sub(BESIDE)..x + 1).iter().any(is_edge) {
-        return;
-    }
-    let Some(width) = part(edges, x..).iter().take(WIDEST_RIM + 1).position(is_edge) else { return };
-    for (answer, flags) in part(answers, x..).iter().zip(part_mut(flags, x..)).take(width) {
-        keep_scalar_loop();
-        *flags = flags.union(PixelFlags::UNTEXTURED.when(answer.get().is_some()));
-        answer.set(Disparity::NONE);
+        frame.backend.refuse_fattening(FatteningWork { answers, flags, edges, row, slope });
     }
 }
 
@@ -117,6 +63,7 @@ mod tests {
     use super::*;
     use crate::matching::backend::Backend;
     use crate::matching::kernel::Kernel;
+    use crate::units::{Disparity, PixelFlags};
 
     const NONE: u16 = Disparity::NONE.raw();
 
@@ -137,29 +84,6 @@ mod tests {
         assert_eq!(answers.map(Disparity::raw), refused);
         for (x, flags) in flags.into_iter().enumerate() {
             assert_eq!(flags, PixelFlags::UNTEXTURED.when((3..6).contains(&x)), "{x}");
-        }
-    }
-
-    #[test]
-    fn a_near_surface_begins_at_its_edge() {
-        // Far, nothing, near from the seventh column on.
-        let row: [u16; 60] = core::array::from_fn(|x| match x {
-            0..4 => 320,
-            4..6 => NONE,
-            _ => 640,
-        });
-        // The column of the only edge, and how many answers are refused.
-        for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
-            let mut answers = row.map(Disparity::from_raw);
-            let mut flags = [PixelFlags::CLEAR; 60];
-            let mut edges = [0xfe; 60];
-            edges[edge] |= 1;
-            refuse_rims(&mut answers, &mut flags, &edges, 1);
-            for x in 0..60 {
-                let gone = (6..6 + refused).contains(&x);
-                let expected = (if gone { NONE } else { row[x] }, PixelFlags::UNTEXTURED.when(gone));
-                assert_eq!((answers[x].raw(), flags[x]), expected, "{edge}: {x}");
-            }
         }
     }
 

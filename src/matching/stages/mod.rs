@@ -27,6 +27,7 @@
 //! open::refuse_unsure         open blocks, margins y - r          band and flags y - r
 //! repeats::refuse_repeats     blocks that repeat                  band and flags y - r
 //! fattening::refuse_fattening band and edges y - r                band and flags y - r
+//! rims::refuse_rims           band, edges, open blocks y - r       band and flags y - r
 //! confidence::note_margins    margins y - r                       notes y - r, in place of the flags
 //! smooth::smooth_along_row    band y - r                          band y - r, surface lengths y - r
 //! open::limit_lengths         open blocks                         surface lengths y - r
@@ -48,6 +49,7 @@ mod texture;
 mod median;
 mod left_right;
 mod fattening;
+mod rims;
 mod open;
 mod repeats;
 mod smooth;
@@ -161,6 +163,7 @@ fn finish_row<S: Method, const MOST: usize>(
         open::refuse_unsure(frame, newest);
         repeats::refuse_repeats::<S>(frame, newest);
         fattening::refuse_fattening::<S>(frame, newest);
+        rims::refuse_rims::<S>(frame, newest);
         confidence::note_margins(frame, newest);
         smooth::smooth_along_row(frame, newest);
         open::limit_lengths(frame);

@@ -64,34 +64,5 @@ pub(super) fn refuse(
             flags[x] = flags[x].union(PixelFlags::UNTEXTURED);
         }
     }
-    if config.noise == Noise::None {
-        for x in rims(&answers, &edges) {
-            flags[x] = flags[x].union(PixelFlags::UNTEXTURED.when(answers[x].is_some()));
-            answers[x] = Disparity::NONE;
-        }
-    }
     (answers, flags)
-}
-
-/// The columns of rims: from where a surface begins over 2 px nearer than the answer before it, with no edge
-/// there or in the two columns before, up to the first edge, if that is at most 32 columns on.
-fn rims(answers: &[Disparity], edges: &[bool]) -> Vec<usize> {
-    let mut columns: Vec<usize> = Vec::new();
-    let mut before: Option<i64> = None;
-    for x in (0..answers.len()).filter(|&x| answers[x].is_some()) {
-        if columns.contains(&x) {
-            continue;
-        }
-        let here = i64::from(answers[x].raw());
-        let begins = before.is_some_and(|before| here > before + 64);
-        let edge = (x + 1..edges.len()).find(|&x| edges[x]);
-        if begins
-            && !edges[x.saturating_sub(2)..=x].contains(&true)
-            && let Some(edge) = edge.filter(|edge| edge - x <= 32)
-        {
-            columns.extend(x..edge);
-        }
-        before = Some(here);
-    }
-    columns
 }

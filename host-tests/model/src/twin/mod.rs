@@ -6,8 +6,8 @@
 //! * [`smooth`]: pictures with less noise, if asked for. [`census`](mod@census): darker neighbours as bits.
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of
 //!   pixels, and their sum along paths.
-//! * `select`: the cheapest disparity, its fraction, the checks. `fattening`: what spreads where no edge is.
-//!   `open`: where no edge is up to the first row. `repeats`: where the left picture repeats itself.
+//! * `select`: the cheapest disparity, its fraction, the checks. `fattening`: what spreads where no edge is,
+//!   `rims` the last of it. `open`: where no edge is up to the first row. `repeats`: where the left picture repeats itself.
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
 //!   the deviation.
 //! * `confidence`: how sure an answer is.
@@ -39,6 +39,7 @@ mod fattening;
 mod filter;
 mod open;
 mod repeats;
+mod rims;
 mod select;
 
 use image::GrayImage;

@@ -4,7 +4,7 @@ use super::cost::{self, Volume};
 use super::open::Open;
 use super::repeats::Repeats;
 use super::smooth::Seen;
-use super::{Answers, Cost, Method, Picture, census, confidence, fattening, filter, paths, select};
+use super::{Answers, Cost, Method, Picture, census, confidence, fattening, filter, paths, rims, select};
 use image::GrayImage;
 use stereopsis::matching::{Config, WinnerRecord};
 use stereopsis::units::{Disparity, PixelFlags};
@@ -64,6 +64,7 @@ impl Stages {
             let (answers, row_flags) = open.refuse(config, y, &row_margins, answers, row_flags);
             let (answers, row_flags) = repeats.refuse(y, answers, row_flags);
             let (answers, row_flags) = fattening::refuse(config, &left, y, answers, row_flags);
+            let (answers, row_flags) = rims::refuse(config, &left, &open, y, answers, row_flags);
             let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
             map.disparity.extend(smooth);
             lengths.extend(row_lengths);

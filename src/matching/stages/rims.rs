@@ -1,0 +1,182 @@
+//! Rims refused: answers of a near surface outside of the edges between which it is.
+//!
+//! What the right camera does not see, left of a near surface, has no answer of its own by which
+//! [`fattening`](super::fattening) could refuse one, nor has a sky. But a near surface begins at an edge:
+//! where it follows a farther answer by over 2 px and no edge is near, its rim up to the first edge is
+//! refused. In an [open](super::open) place it also ends at one, and there columns without answers count as
+//! far ones. A surface without an edge close by stays.
+
+use super::open;
+use crate::imaging::Noise;
+use crate::matching::backend::loops::keep_scalar_loop;
+use crate::matching::backend::{FatteningWork, MethodParameters};
+use crate::matching::memory::slices::part;
+use crate::matching::method::Frame;
+use crate::units::{Disparity, PixelFlags};
+use core::cell::Cell;
+use core::ops::Range;
+
+/// Columns before a surface's first answer in which an edge may be that it begins at.
+const BESIDE: usize = 2;
+/// Most columns of a rim.
+const WIDEST: usize = 32;
+/// Columns without answers that count as far ones in an open place.
+const EMPTY: u32 = 8;
+
+/// Refuses the rims among the answers of `newest`.
+pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: usize) {
+    let checks = &frame.config.checks;
+    // Noise hides edges that a surface begins at.
+    if checks.fattening_slope.is_none() || frame.config.noise != Noise::None {
+        return;
+    }
+    let row = Row {
+        answers: Cell::from_mut(frame.band.row_mut(newest)).as_slice_of_cells(),
+        flags: Cell::from_mut(frame.flags.row_mut(newest)).as_slice_of_cells(),
+        edges: frame.edges,
+        bit: 1 << S::RADIUS_Y,
+    };
+    row.refuse(0..row.answers.len(), RIGHT, u32::MAX);
+    if checks.look_for_open() {
+        open::for_columns(frame.blocks, frame.width, &mut |columns| {
+            row.refuse(columns.clone(), RIGHT, EMPTY);
+            row.refuse(columns, LEFT, EMPTY);
+        });
+    }
+}
+
+/// The next column to the right: what is added to a column's number.
+const RIGHT: usize = 1;
+/// The next column to the left.
+const LEFT: usize = usize::MAX;
+
+/// A row of answers with the edges in it.
+struct Row<'a> {
+    answers: &'a [Cell<Disparity>],
+    flags: &'a [Cell<PixelFlags>],
+    edges: &'a [u8],
+    /// Set in the edges of this row.
+    bit: u8,
+}
+
+impl Row<'_> {
+    /// Refuses the rims of surfaces that begin in `columns`, seen one `way` along the row: so many columns
+    /// without answers are far ones.
+    #[inline(never)]
+    fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: u32) {
+        let first = columns.start;
+        let answers = part(self.answers, columns);
+        let mut x = if way == RIGHT { 0 } else { answers.len().wrapping_add(LEFT) };
+        // No answer is nearer than what stands before the first.
+        let (mut nearest, mut empty) = (i32::from(i16::MAX), 0);
+        while let Some(answer) = answers.get(x) {
+            keep_scalar_loop();
+            // No answer is less than any: -1.
+            let here = i32::from(answer.get().raw() as i16);
+            if here < 0 {
+                empty += 1;
+                nearest = if empty == far_when_empty { -1 } else { nearest };
+            } else {
+                if here > nearest {
+                    self.refuse_rim(first + x, way);
+                }
+                (nearest, empty) = (here + i32::from(FatteningWork::TOLERANCE), 0);
+            }
+            x = x.wrapping_add(way);
+        }
+    }
+
+    /// Refuses the rim of a surface that begins in column `x`.
+    // Surfaces are few: most columns begin none.
+    #[inline(never)]
+    fn refuse_rim(&self, x: usize, way: usize) {
+        let beside = x.wrapping_sub(way.wrapping_mul(BESIDE));
+        if self.without_edge(beside, way, BESIDE + 1) <= BESIDE {
+            return;
+        }
+        let width = self.without_edge(x, way, WIDEST + 1);
+        if width > WIDEST {
+            return;
+        }
+        let mut x = x;
+        for _ in 0..width {
+            keep_scalar_loop();
+            if let (Some(answer), Some(flags)) = (self.answers.get(x), self.flags.get(x)) {
+                flags.set(flags.get().union(PixelFlags::UNTEXTURED.when(answer.get().is_some())));
+                answer.set(Disparity::NONE);
+            }
+            x = x.wrapping_add(way);
+        }
+    }
+
+    /// How many columns from `x` on are before an edge: `most` if there is none in so many.
+    #[inline(never)]
+    fn without_edge(&self, mut x: usize, way: usize, most: usize) -> usize {
+        for count in 0..most {
+            keep_scalar_loop();
+            if self.edges.get(x).is_some_and(|edges| edges & self.bit != 0) {
+                return count;
+            }
+            x = x.wrapping_add(way);
+        }
+        most
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE: u16 = Disparity::NONE.raw();
+
+    /// Answers are refused in so many columns from `first` on, seen in this way, with an edge in one column.
+    fn check(row: &[u16], columns: Range<usize>, way: usize, edge: usize, refused: Range<usize>) {
+        let mut answers: [_; 60] = core::array::from_fn(|x| Disparity::from_raw(row[x]));
+        let mut flags = [PixelFlags::CLEAR; 60];
+        let mut edges = [0xfe; 60];
+        edges[edge] |= 1;
+        let cells = Row {
+            answers: Cell::from_mut(&mut answers[..]).as_slice_of_cells(),
+            flags: Cell::from_mut(&mut flags[..]).as_slice_of_cells(),
+            edges: &edges,
+            bit: 1,
+        };
+        cells.refuse(columns, way, EMPTY);
+        for x in 0..60 {
+            let gone = refused.contains(&x);
+            let expected = (if gone { NONE } else { row[x] }, PixelFlags::UNTEXTURED.when(gone));
+            assert_eq!((answers[x].raw(), flags[x]), expected, "{edge}: {x}");
+        }
+    }
+
+    #[test]
+    fn a_near_surface_begins_and_ends_at_its_edge() {
+        // Far, nothing, near from the seventh column on.
+        let row: [u16; 60] = core::array::from_fn(|x| match x {
+            0..4 => 320,
+            4..6 => NONE,
+            _ => 640,
+        });
+        let mut mirrored = row;
+        mirrored.reverse();
+        // The column of the only edge, and how many answers are refused.
+        for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
+            check(&row, 0..60, RIGHT, edge, 6..6 + refused);
+            check(&mirrored, 0..60, LEFT, 59 - edge, 54 - refused..54);
+            check(&row, 0..60, LEFT, edge, 0..0);
+        }
+    }
+
+    #[test]
+    fn columns_without_answers_are_far_where_so_many_are() {
+        for empty in [7, 8, 9] {
+            let row: [u16; 60] =
+                core::array::from_fn(|x| if (20..20 + empty).contains(&x) { NONE } else { 320 });
+            let (begin, refused) = (20 + empty, if empty < 8 { 0 } else { 4 });
+            check(&row, 0..60, RIGHT, begin + 4, begin..begin + refused);
+            check(&row, 0..60, LEFT, 15, 20 - refused..20);
+            // Columns outside of the place do not count.
+            check(&row, 21..60, RIGHT, begin + 4, if empty < 9 { 0..0 } else { begin..begin + 4 });
+        }
+    }
+}

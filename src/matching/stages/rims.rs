@@ -22,6 +22,11 @@ const BESIDE: usize = 2;
 const WIDEST: usize = 32;
 /// Columns without answers that count as far ones in an open place.
 const EMPTY: u32 = 8;
+/// Columns at the end of an open place in which the edge may be that it ends at: its last block, and the one
+/// beside it.
+const END: usize = 2 * open::BLOCK;
+/// Columns at the end of an open place that are gone through.
+const REACH: usize = EMPTY as usize + WIDEST + END;
 
 /// Refuses the rims among the answers of `newest`.
 pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: usize) {
@@ -38,9 +43,15 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
     };
     row.refuse(0..row.answers.len(), RIGHT, u32::MAX);
     if checks.look_for_open() {
-        open::for_columns(frame.blocks, frame.width, &mut |columns| {
-            row.refuse(columns.clone(), RIGHT, EMPTY);
-            row.refuse(columns, LEFT, EMPTY);
+        open::for_columns(frame.blocks, frame.width, &mut |Range { start, end }| {
+            // A place without an edge at its end has no rim there.
+            let is_at_edge = |x, way| row.without_edge(x, way, END + WIDEST) < END + WIDEST;
+            if is_at_edge(end.wrapping_sub(END), RIGHT) {
+                row.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY);
+            }
+            if is_at_edge(start + (END - 1), LEFT) {
+                row.refuse(start..end.min(start + REACH), LEFT, EMPTY);
+            }
         });
     }
 }
@@ -77,7 +88,7 @@ impl Row<'_> {
                 empty += 1;
                 nearest = if empty == far_when_empty { -1 } else { nearest };
             } else {
-                if here > nearest {
+                if here > nearest && !self.has_edge(first + x) {
                     self.refuse_rim(first + x, way);
                 }
                 (nearest, empty) = (here + i32::from(FatteningWork::TOLERANCE), 0);
@@ -86,12 +97,17 @@ impl Row<'_> {
         }
     }
 
-    /// Refuses the rim of a surface that begins in column `x`.
+    #[inline(always)]
+    fn has_edge(&self, x: usize) -> bool {
+        self.edges.get(x).is_some_and(|edges| edges & self.bit != 0)
+    }
+
+    /// Refuses the rim of a surface that begins in column `x`, which has no edge.
     // Surfaces are few: most columns begin none.
     #[inline(never)]
     fn refuse_rim(&self, x: usize, way: usize) {
         let beside = x.wrapping_sub(way.wrapping_mul(BESIDE));
-        if self.without_edge(beside, way, BESIDE + 1) <= BESIDE {
+        if self.without_edge(beside, way, BESIDE) < BESIDE {
             return;
         }
         let width = self.without_edge(x, way, WIDEST + 1);
@@ -114,7 +130,7 @@ impl Row<'_> {
     fn without_edge(&self, mut x: usize, way: usize, most: usize) -> usize {
         for count in 0..most {
             keep_scalar_loop();
-            if self.edges.get(x).is_some_and(|edges| edges & self.bit != 0) {
+            if self.has_edge(x) {
                 return count;
             }
             x = x.wrapping_add(way);

@@ -32,9 +32,14 @@ pub(super) fn refuse(
     if config.checks.open_run > 0 || config.checks.open_margin > 0 {
         let is_near = |x: &usize| open.is_near(y * width + x);
         for place in to_right.split(|x| !is_near(x)).filter(|place| !place.is_empty()) {
-            refuse(place, &to_right, true);
-            let back: Vec<usize> = place.iter().rev().copied().collect();
-            refuse(&back, &to_left, true);
+            let (start, end) = (place[0], place[place.len() - 1] + 1);
+            if edges[end.saturating_sub(8)..width.min(end + 32)].contains(&true) {
+                refuse(&place[place.len().saturating_sub(48)..], &to_right, true);
+            }
+            if edges[start.saturating_sub(32)..width.min(start + 8)].contains(&true) {
+                let back: Vec<usize> = place.iter().take(48).rev().copied().collect();
+                refuse(&back, &to_left, true);
+            }
         }
     }
     (answers, flags)

@@ -8,7 +8,7 @@
 
 use super::open;
 use crate::imaging::Noise;
-use crate::matching::backend::loops::keep_scalar_loop;
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::{FatteningWork, MethodParameters};
 use crate::matching::memory::slices::part;
 use crate::matching::method::Frame;
@@ -46,10 +46,10 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
         open::for_columns(frame.blocks, frame.width, &mut |Range { start, end }| {
             // A place without an edge at its end has no rim there.
             let is_at_edge = |x, way| row.without_edge(x, way, END + WIDEST) < END + WIDEST;
-            if is_at_edge(end.wrapping_sub(END), RIGHT) {
+            if is_at_edge(end.saturating_sub(END), RIGHT) {
                 row.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY);
             }
-            if is_at_edge(start + (END - 1), LEFT) {
+            if is_at_edge(end.min(start + END).saturating_sub(1), LEFT) {
                 row.refuse(start..end.min(start + REACH), LEFT, EMPTY);
             }
         });
@@ -81,7 +81,7 @@ impl Row<'_> {
         // No answer is nearer than what stands before the first.
         let (mut nearest, mut empty) = (i32::from(i16::MAX), 0);
         while let Some(answer) = answers.get(x) {
-            keep_scalar_loop();
+            keep_loop();
             // No answer is less than any: -1.
             let here = i32::from(answer.get().raw() as i16);
             if here < 0 {
@@ -106,8 +106,8 @@ impl Row<'_> {
     // Surfaces are few: most columns begin none.
     #[inline(never)]
     fn refuse_rim(&self, x: usize, way: usize) {
-        let beside = x.wrapping_sub(way.wrapping_mul(BESIDE));
-        if self.without_edge(beside, way, BESIDE) < BESIDE {
+        let back = way.wrapping_neg();
+        if self.without_edge(x.wrapping_add(back), back, BESIDE) < BESIDE {
             return;
         }
         let width = self.without_edge(x, way, WIDEST + 1);
@@ -116,7 +116,7 @@ impl Row<'_> {
         }
         let mut x = x;
         for _ in 0..width {
-            keep_scalar_loop();
+            keep_loop();
             if let (Some(answer), Some(flags)) = (self.answers.get(x), self.flags.get(x)) {
                 flags.set(flags.get().union(PixelFlags::UNTEXTURED.when(answer.get().is_some())));
                 answer.set(Disparity::NONE);
@@ -125,13 +125,15 @@ impl Row<'_> {
         }
     }
 
-    /// How many columns from `x` on are before an edge: `most` if there is none in so many.
+    /// How many columns from `x` on are before an edge: `most` if there is none in so many, or in the row.
     #[inline(never)]
     fn without_edge(&self, mut x: usize, way: usize, most: usize) -> usize {
         for count in 0..most {
-            keep_scalar_loop();
-            if self.has_edge(x) {
-                return count;
+            keep_loop();
+            match self.edges.get(x) {
+                Some(edges) if edges & self.bit == 0 => {}
+                Some(_) => return count,
+                None => break,
             }
             x = x.wrapping_add(way);
         }

@@ -54,18 +54,19 @@ const MISSED: f64 = 0.05;
 const BADLY_EXPOSED: f64 = 0.25;
 
 impl PairCheck {
-    /// Looks at a pair that is to be matched, whose pictures show nothing where `valid` is 0.
+    /// Looks at a pair that is to be matched, whose pictures show nothing where `valid` is 0 and have this
+    /// [`fault`].
     pub fn new(
         pictures: [&GrayImage; 2],
         valid: Option<[&GrayImage; 2]>,
         matches: &PairMatches,
+        fault: Option<PairFault>,
         config: &Config,
     ) -> Self {
         let found = matches.disparities_px();
         let at =
             |share: f64| found.get((share * found.len().saturating_sub(1) as f64).round() as usize).copied();
         let range = (found.len() >= FEWEST).then(|| Some([at(0.02)?, at(0.98)?])).flatten();
-        let fault = fault(pictures, matches);
         let first = f64::from(config.min_disparity);
         let last = first + f64::from(config.disparities) - 1.0;
         let share = |is_so: &dyn Fn(f64) -> bool| {

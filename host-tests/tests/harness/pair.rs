@@ -1,7 +1,7 @@
 //! What is wrong with a pair is found, and nothing where nothing is.
 
 use image::{GrayImage, imageops};
-use stereopsis_host::pair::{PairCheck, PairFault, PairMatches, search};
+use stereopsis_host::pair::{PairCheck, PairFault, PairMatches, fault, search};
 use stereopsis_host::run::MethodName;
 use stereopsis_host::scene::{HardScene, Scene};
 
@@ -9,7 +9,7 @@ use stereopsis_host::scene::{HardScene, Scene};
 fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
     let matches = PairMatches::find([left, right], None).expect("features");
     let config = MethodName::Block.config(left.width() as u16, left.height() as u16, disparities);
-    PairCheck::new([left, right], None, &matches, &config)
+    PairCheck::new([left, right], None, &matches, fault([left, right], &matches), &config)
 }
 
 /// A square of a picture, which may be turned by 90 degrees and keep its size.
@@ -122,7 +122,8 @@ fn what_a_picture_lacks_is_measured() {
     let (left, right) = (painted(&left), painted(&right));
     let matches = PairMatches::find([&left, &right], Some([&shown; 2])).expect("features");
     let config = MethodName::Block.config(width as u16, height as u16, 64);
-    let found = PairCheck::new([&left, &right], Some([&shown; 2]), &matches, &config);
+    let fault = fault([&left, &right], &matches);
+    let found = PairCheck::new([&left, &right], Some([&shown; 2]), &matches, fault, &config);
     assert!(found.over_exposed < 0.05 && found.under_exposed < 0.05 && found.untextured < 0.2, "{found:?}");
 }
 

@@ -102,17 +102,19 @@ pub fn refuse_swapped(
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<(), Failure> {
     // Where nothing is found nothing is said.
-    match PairMatches::find(pictures, None) {
-        Ok(matches) if is_swapped(pictures, &matches, exchanged) => {
-            Err(Failure::new(format!("{}, or give --force", PairFault::Swapped)))
-        }
-        _ => Ok(()),
-    }
+    let Ok(matches) = PairMatches::find(pictures, None) else { return Ok(()) };
+    let fault = pair::fault(pictures, &matches);
+    if is_swapped(fault, pictures[0].width(), &matches, exchanged) { Err(swapped()) } else { Ok(()) }
+}
+
+fn swapped() -> Failure {
+    Failure::new(format!("{}, or give --force", PairFault::Swapped))
 }
 
 /// Whether the cameras are swapped: pictures that a calibration rectified may be a pair only then.
 fn is_swapped(
-    pictures: [&GrayImage; 2],
+    fault: Option<PairFault>,
+    width: u32,
     matches: &PairMatches,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> bool {
@@ -122,10 +124,10 @@ fn is_swapped(
             found.is_aligned(pictures[0].width()) && pair::fault(pictures, &found).is_none()
         })
     };
-    match pair::fault(pictures, matches) {
+    match fault {
         Some(PairFault::Swapped) => true,
         Some(PairFault::Same | PairFault::Still) => false,
-        _ if matches.is_aligned(pictures[0].width()) => false,
+        _ if matches.is_aligned(width) => false,
         _ => exchanged().is_some_and(is_pair),
     }
 }
@@ -150,20 +152,21 @@ pub fn look(
     let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
     // Pictures without features are matched as well as they can be.
     let matches = PairMatches::find(pictures, valid).ok();
+    let fault = matches.as_ref().and_then(|matches| pair::fault(pictures, matches));
     if let Some(matches) = matches.as_ref().filter(|_| !args.force)
-        && is_swapped(pictures, matches, exchanged)
+        && is_swapped(fault, pictures[0].width(), matches, exchanged)
     {
-        return Err(Failure::new(format!("{}, or give --force", PairFault::Swapped)));
+        return Err(swapped());
     }
     let [first, count] = match args.disparities {
         Disparities::Count(count) => [args.min_disparity.unwrap_or(0), count],
-        Disparities::Auto => searched(pictures, matches.as_ref(), args.min_disparity)?,
+        Disparities::Auto => searched(pictures, matches.as_ref(), fault, args.min_disparity)?,
     };
     let range = RangeArgs { disparities: count, min_disparity: first };
     let config = input::config(&range, method, width, height)?;
     let config = Config { confidence: true, ..config };
     let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
-    let check = PairCheck::new(pictures, valid, &matches, &config);
+    let check = PairCheck::new(pictures, valid, &matches, fault, &config);
     // Rows of images that are turned or mirrored say nothing of the cameras.
     let has_rows = matches!(check.fault, None | Some(PairFault::Swapped));
     let rows = has_rows.then(|| Rows::measure(&matches, ImageSize { width, height }, camera)).flatten();
@@ -174,12 +177,13 @@ pub fn look(
 fn searched(
     pictures: [&GrayImage; 2],
     matches: Option<&PairMatches>,
+    fault: Option<PairFault>,
     first: Option<u16>,
 ) -> Result<[u16; 2], Failure> {
     let refused = |why: &dyn std::fmt::Display| Failure::new(format!("--disparities auto: {why}"));
     let too_little = "the images show too little to find a range; give a number";
     let matches = matches.ok_or_else(|| refused(&too_little))?;
-    if let Some(fault) = pair::fault(pictures, matches) {
+    if let Some(fault) = fault {
         return Err(refused(&fault));
     }
     let [found, count] = pair::search(pictures, matches).ok_or_else(|| refused(&too_little))?;

@@ -159,8 +159,8 @@ pub struct Checks {
     /// however long it is. 0: it counts as all it has.
     pub speckle_run: u8,
     /// Fattening: along a part of a row without edges an answer may be nearer than the others by 2 px, and by
-    /// this much for each pixel between. Images without noise are also asked for an edge where a nearer surface
-    /// begins. [`Disparity::NONE`]: neither is checked, and the passes are saved.
+    /// this much for each pixel between. The methods along paths also ask images without noise for an edge
+    /// where a nearer surface begins. [`Disparity::NONE`]: neither is checked, and the passes are saved.
     pub fattening_slope: Disparity,
     /// Open: in and beside a place without edges that reaches up to the image's first row, as a sky does, a
     /// row of a surface counts as at most this many answers for its speckle. 0: as anywhere.

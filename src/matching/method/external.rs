@@ -31,6 +31,7 @@ impl<S: MethodParameters> MethodParameters for External<S> {
     const RADIUS_X: usize = S::RADIUS_X;
     const RADIUS_Y: usize = S::RADIUS_Y;
     const SLANT_COST: u8 = S::SLANT_COST;
+    const ALONG_PATHS: bool = S::ALONG_PATHS;
     const EXTERNAL_WINNERS: bool = true;
 }
 

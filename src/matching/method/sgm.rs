@@ -63,7 +63,7 @@ macro_rules! along_paths {
             const RADIUS_X: usize = 4;
             const RADIUS_Y: usize = <Self as SgmParameters>::ROWS_BELOW;
             const SLANT_COST: u8 = SLANT_COST;
-            const COMPARES_PIXELS: bool = true;
+            const ALONG_PATHS: bool = true;
         }
 
         impl Method for $method {

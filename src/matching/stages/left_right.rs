@@ -63,7 +63,7 @@ pub(super) fn compared<'a, S: Method>(
     begin: usize,
     width: usize,
 ) -> Option<[&'a [u8]; 2]> {
-    let lines = lines.filter(|_| S::COMPARES_PIXELS && config.noise == Noise::None)?;
+    let lines = lines.filter(|_| S::ALONG_PATHS && config.noise == Noise::None)?;
     let [left, right] = lines.map(|lines| lines.get(2usize.wrapping_sub(S::RADIUS_Y)).copied());
     Some([part(left?, begin..width), part(right?, ..width - begin)])
 }

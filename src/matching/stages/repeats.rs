@@ -42,7 +42,7 @@ const AMBIGUOUS: u32 = PixelFlags::AMBIGUOUS.bits() as u32 * 0x0101_0101;
 /// methods have no code for it. A narrower row has none.
 #[inline(always)]
 fn is_asked<S: Method>(frame: &Frame<'_>) -> bool {
-    S::VERTICAL_FILTER && frame.config.checks.refuse_repeats && frame.width >= LEAST_PERIOD + LEAST_RUN
+    S::ALONG_PATHS && frame.config.checks.refuse_repeats && frame.width >= LEAST_PERIOD + LEAST_RUN
 }
 
 /// Forgets the frame before.

@@ -32,7 +32,8 @@ const REACH: usize = EMPTY as usize + WIDEST + END;
 pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: usize) {
     let checks = &frame.config.checks;
     // Noise hides edges that a surface begins at.
-    if checks.fattening_slope.is_none() || frame.config.noise != Noise::None {
+    let asked = S::ALONG_PATHS && checks.fattening_slope.is_some() && frame.config.noise == Noise::None;
+    if !asked {
         return;
     }
     let row = Row {

@@ -1,13 +1,14 @@
 //! Rims refused: answers of a near surface outside of the edges between which it is.
 
 use super::open::Open;
-use super::{Picture, fattening};
+use super::{Cost, Method, Picture, fattening};
 use stereopsis::imaging::Noise;
 use stereopsis::matching::Config;
 use stereopsis::units::{Disparity, PixelFlags};
 
 /// The answers and flags of row `y` without those of rims.
 pub(super) fn refuse(
+    scheme: &Method,
     config: &Config,
     left: &Picture<'_>,
     open: &Open,
@@ -16,7 +17,10 @@ pub(super) fn refuse(
     mut flags: Vec<PixelFlags>,
 ) -> (Vec<Disparity>, Vec<PixelFlags>) {
     let width = answers.len();
-    if config.checks.fattening_slope.is_none() || config.noise != Noise::None {
+    let asked = matches!(scheme.cost, Cost::Paths { .. })
+        && config.checks.fattening_slope.is_some()
+        && config.noise == Noise::None;
+    if !asked {
         return (answers, flags);
     }
     let edges: Vec<bool> = (0..width).map(|x| fattening::is_edge(config, left, x, y)).collect();

@@ -64,7 +64,7 @@ impl Stages {
             let (answers, row_flags) = open.refuse(config, y, &row_margins, answers, row_flags);
             let (answers, row_flags) = repeats.refuse(y, answers, row_flags);
             let (answers, row_flags) = fattening::refuse(config, &left, y, answers, row_flags);
-            let (answers, row_flags) = rims::refuse(config, &left, &open, y, answers, row_flags);
+            let (answers, row_flags) = rims::refuse(scheme, config, &left, &open, y, answers, row_flags);
             let (smooth, row_lengths) = filter::smooth_row(&config.checks, &answers);
             map.disparity.extend(smooth);
             lengths.extend(row_lengths);

@@ -10,8 +10,8 @@ pub trait MethodParameters: 'static {
     /// The cost that a disparity one px beside the winner has for that alone, on a slanted surface. The
     /// sub-pixel fit leaves it out of the rise to both sides.
     const SLANT_COST: u8 = 0;
-    /// Whether costs are added up along paths: then a left pixel's offer to its partner also costs what the two
-    /// differ by, and answers are refused at rims and on patterns that repeat.
+    /// Whether costs are added up along paths: then a left pixel's offer to its partner also costs what the
+    /// two differ by, and answers are refused at rims and on patterns that repeat.
     const ALONG_PATHS: bool = false;
     /// Whether winners are computed by something else and handed over
     /// ([`External`](crate::matching::External)).

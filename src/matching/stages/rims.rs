@@ -3,8 +3,8 @@
 //! What the right camera does not see, left of a near surface, has no answer of its own by which
 //! [`fattening`](super::fattening) could refuse one, nor has a sky. But a near surface begins at an edge:
 //! where it follows a farther answer by over 2 px and no edge is near, its rim up to the first edge is
-//! refused. In an [open](super::open) place it also ends at one, and there columns without answers count as
-//! far ones. A surface without an edge close by stays.
+//! refused. In an [open] place it also ends at one, and there columns without answers count as far ones. A
+//! surface without an edge close by stays.
 
 use super::open;
 use crate::imaging::Noise;

@@ -7,7 +7,8 @@
 //! * [`cost`]: bits that differ, per disparity, and their sum over the window. [`paths`]: differences of
 //!   pixels, and their sum along paths.
 //! * `select`: the cheapest disparity, its fraction, the checks. `fattening`: what spreads where no edge is,
-//!   `rims` the last of it. `open`: where no edge is up to the first row. `repeats`: where the left picture repeats itself.
+//!   `rims` the last of it. `open`: where no edge is up to the first row. `repeats`: where the left picture
+//!   repeats itself.
 //! * `filter`: smoothing along the row, the median, the speckle filter, smoothing down the columns, filling,
 //!   the deviation.
 //! * `confidence`: how sure an answer is.

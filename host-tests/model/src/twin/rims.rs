@@ -49,10 +49,10 @@ pub(super) fn refuse(
     (answers, flags)
 }
 
-/// The columns of the rims of surfaces that begin in `columns`, in this order. A surface begins over 2 px nearer
-/// than the answer before it or, if empty columns count, where eight without answers are before it. Its rim
-/// goes up to the first edge of the whole `row`, if that is at most 32 columns on; it has none if an edge is
-/// where the surface begins or in the two columns before.
+/// The columns of the rims of surfaces that begin in `columns`, in this order. A surface begins over 2 px
+/// nearer than the answer before it or, if empty columns count, where eight without answers are before it.
+/// Its rim goes up to the first edge of the whole `row`, if that is at most 32 columns on; it has none if an
+/// edge is where the surface begins or in the two columns before.
 fn rims(
     answers: &[Disparity],
     edges: &[bool],

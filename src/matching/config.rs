@@ -166,8 +166,9 @@ pub struct Checks {
     /// row of a surface counts as at most this many answers for its speckle. 0: as anywhere.
     pub open_run: u8,
     /// Open: there an answer stays when every other disparity, but for those up to two px beside it, costs
-    /// more by at least this, up to [`Checks::MOST_OPEN_MARGIN`]. 0: not checked, and the kernel saves the
-    /// pass.
+    /// more by at least this, up to [`Checks::MOST_OPEN_MARGIN`]. Where the fattening of methods along paths
+    /// is checked too, a near surface there must also end at an edge. 0: neither is checked, and the kernel
+    /// saves the pass.
     pub open_margin: u8,
     /// Repeats, with the methods along paths: whether answers are refused on patterns that repeat along the
     /// row within the search, such as a chessboard's.

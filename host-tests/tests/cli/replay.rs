@@ -35,7 +35,7 @@ pub fn run(arguments: &[&str]) -> String {
 }
 
 /// What a run that succeeds says on standard error.
-pub fn notes(arguments: &[&str]) -> String {
+fn notes(arguments: &[&str]) -> String {
     let run = stereo(arguments);
     assert!(run.status.success(), "{arguments:?}: {}", text(&run.stderr));
     text(&run.stderr).to_owned()

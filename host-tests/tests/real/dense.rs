@@ -278,6 +278,6 @@ fn sgm_on_real_pairs_of_other_exposures() {
     }
     let mean = Score::mean(&scores);
     println!("sgm, right x 1.2 + 15: {mean:?}");
-    // On three scenes too much is saturated: what stands beside an open place there has few answers.
-    assert!(mean.missed <= 0.104 && mean.bad2 <= 0.068, "missed {}, bad2 {}", mean.missed, mean.bad2);
+    // On three scenes too much is saturated.
+    assert!(mean.missed <= 0.101 && mean.bad2 <= 0.068, "missed {}, bad2 {}", mean.missed, mean.bad2);
 }

@@ -3,8 +3,8 @@
 //! What the right camera does not see, left of a near surface, has no answer of its own by which
 //! [`fattening`](super::fattening) could refuse one, nor has a sky. But a near surface begins at an edge:
 //! where it follows a farther answer by over 2 px and no edge is near, its rim up to the first edge is
-//! refused. In an [open] place it also ends at one, and there columns without answers count as far ones. A
-//! surface without an edge close by stays.
+//! refused. Where [open] places ask for a margin, a surface in one also ends at an edge, and columns without
+//! answers count as far ones. A surface without an edge close by stays.
 
 use super::open;
 use crate::imaging::Noise;
@@ -43,17 +43,8 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
         bit: 1 << S::RADIUS_Y,
     };
     row.refuse(0..row.answers.len(), RIGHT, u32::MAX);
-    if checks.look_for_open() {
-        open::for_columns(frame.blocks, frame.width, &mut |Range { start, end }| {
-            // A place without an edge at its end has no rim there.
-            let is_at_edge = |x, way| row.without_edge(x, way, END + WIDEST) < END + WIDEST;
-            if is_at_edge(end.saturating_sub(END), RIGHT) {
-                row.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY);
-            }
-            if is_at_edge(end.min(start + END).saturating_sub(1), LEFT) {
-                row.refuse(start..end.min(start + REACH), LEFT, EMPTY);
-            }
-        });
+    if checks.open_margin > 0 {
+        open::for_columns(frame.blocks, frame.width, &mut |place| row.refuse_at_ends(place));
     }
 }
 
@@ -72,6 +63,18 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
+    /// Refuses the rims of surfaces at the ends of an open place.
+    fn refuse_at_ends(&self, Range { start, end }: Range<usize>) {
+        // A place without an edge at its end has no rim there.
+        let is_at_edge = |x, way| self.without_edge(x, way, END + WIDEST) < END + WIDEST;
+        if is_at_edge(end.saturating_sub(END), RIGHT) {
+            self.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY);
+        }
+        if is_at_edge(end.min(start + END).saturating_sub(1), LEFT) {
+            self.refuse(start..end.min(start + REACH), LEFT, EMPTY);
+        }
+    }
+
     /// Refuses the rims of surfaces that begin in `columns`, seen one `way` along the row: so many columns
     /// without answers are far ones.
     #[inline(never)]
@@ -147,31 +150,38 @@ mod tests {
     use super::*;
 
     const NONE: u16 = Disparity::NONE.raw();
+    const WIDTH: usize = 60;
 
-    /// Answers are refused in so many columns from `first` on, seen in this way, with an edge in one column.
-    fn check(row: &[u16], columns: Range<usize>, way: usize, edge: usize, refused: Range<usize>) {
-        let mut answers: [_; 60] = core::array::from_fn(|x| Disparity::from_raw(row[x]));
-        let mut flags = [PixelFlags::CLEAR; 60];
-        let mut edges = [0xfe; 60];
-        edges[edge] |= 1;
-        let cells = Row {
+    /// What `refuse` does to a row with edges in some columns: it refuses these answers and no others.
+    fn check(row: &[u16], at: &[usize], refuse: impl Fn(&Row<'_>), refused: Range<usize>) {
+        let mut answers: [_; WIDTH] = core::array::from_fn(|x| Disparity::from_raw(row[x]));
+        let mut flags = [PixelFlags::CLEAR; WIDTH];
+        let mut edges = [0xfe; WIDTH];
+        for &x in at {
+            edges[x] |= 1;
+        }
+        refuse(&Row {
             answers: Cell::from_mut(&mut answers[..]).as_slice_of_cells(),
             flags: Cell::from_mut(&mut flags[..]).as_slice_of_cells(),
             edges: &edges,
             bit: 1,
-        };
-        cells.refuse(columns, way, EMPTY);
-        for x in 0..60 {
+        });
+        for x in 0..WIDTH {
             let gone = refused.contains(&x);
             let expected = (if gone { NONE } else { row[x] }, PixelFlags::UNTEXTURED.when(gone));
-            assert_eq!((answers[x].raw(), flags[x]), expected, "{edge}: {x}");
+            assert_eq!((answers[x].raw(), flags[x]), expected, "{at:?}: {x}");
         }
+    }
+
+    /// Refuses the rims in these columns, seen in this way.
+    fn rims(columns: Range<usize>, way: usize) -> impl Fn(&Row<'_>) {
+        move |row| row.refuse(columns.clone(), way, EMPTY)
     }
 
     #[test]
     fn a_near_surface_begins_and_ends_at_its_edge() {
         // Far, nothing, near from the seventh column on.
-        let row: [u16; 60] = core::array::from_fn(|x| match x {
+        let row: [u16; WIDTH] = core::array::from_fn(|x| match x {
             0..4 => 320,
             4..6 => NONE,
             _ => 640,
@@ -180,22 +190,48 @@ mod tests {
         mirrored.reverse();
         // The column of the only edge, and how many answers are refused.
         for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
-            check(&row, 0..60, RIGHT, edge, 6..6 + refused);
-            check(&mirrored, 0..60, LEFT, 59 - edge, 54 - refused..54);
-            check(&row, 0..60, LEFT, edge, 0..0);
+            check(&row, &[edge], rims(0..60, RIGHT), 6..6 + refused);
+            check(&mirrored, &[59 - edge], rims(0..60, LEFT), 54 - refused..54);
+            check(&row, &[edge], rims(0..60, LEFT), 0..0);
         }
     }
 
     #[test]
     fn columns_without_answers_are_far_where_so_many_are() {
         for empty in [7, 8, 9] {
-            let row: [u16; 60] =
+            let row: [u16; WIDTH] =
                 core::array::from_fn(|x| if (20..20 + empty).contains(&x) { NONE } else { 320 });
             let (begin, refused) = (20 + empty, if empty < 8 { 0 } else { 4 });
-            check(&row, 0..60, RIGHT, begin + 4, begin..begin + refused);
-            check(&row, 0..60, LEFT, 15, 20 - refused..20);
+            check(&row, &[begin + 4], rims(0..60, RIGHT), begin..begin + refused);
+            check(&row, &[15], rims(0..60, LEFT), 20 - refused..20);
             // Columns outside of the place do not count.
-            check(&row, 21..60, RIGHT, begin + 4, if empty < 9 { 0..0 } else { begin..begin + 4 });
+            let refused = if empty < 9 { 0..0 } else { begin..begin + 4 };
+            check(&row, &[begin + 4], rims(21..60, RIGHT), refused);
+        }
+    }
+
+    #[test]
+    fn the_ends_of_a_place_are_gone_through() {
+        // Nothing, a surface of two columns, nothing.
+        let at = |first: usize| -> [u16; WIDTH] {
+            core::array::from_fn(|x| if (first..first + 2).contains(&x) { 320 } else { NONE })
+        };
+        // From the last column, 58, 48 columns are gone through: eight of them are before column 19.
+        // The edge of the end is within its last eight columns or in the 32 after them.
+        let cases: [(usize, &[usize], usize); 6] = [
+            (18, &[21, 51], 0),
+            (19, &[22, 51], 2),
+            (19, &[51], 2),
+            (18, &[51], 0),
+            (20, &[51], 2),
+            (20, &[50], 0),
+        ];
+        for (first, edges, refused) in cases {
+            check(&at(first), edges, |row| row.refuse_at_ends(1..59), first..first + refused);
+            let mut mirrored = at(first);
+            mirrored.reverse();
+            let edges: [usize; 2] = core::array::from_fn(|place| 59 - edges[place.min(edges.len() - 1)]);
+            check(&mirrored, &edges, |row| row.refuse_at_ends(1..59), 60 - first - refused..60 - first);
         }
     }
 }

@@ -33,7 +33,7 @@ pub(super) fn refuse(
     let to_right: Vec<usize> = (0..width).collect();
     let to_left: Vec<usize> = (0..width).rev().collect();
     refuse(&to_right, &to_right, false);
-    if config.checks.open_run > 0 || config.checks.open_margin > 0 {
+    if config.checks.open_margin > 0 {
         let is_near = |x: &usize| open.is_near(y * width + x);
         for place in to_right.split(|x| !is_near(x)).filter(|place| !place.is_empty()) {
             let (start, end) = (place[0], place[place.len() - 1] + 1);

@@ -56,6 +56,10 @@ impl DisparityFile {
         let image = image.map_err(|e| format!("is neither PFM nor a picture of disparities ({e})"))?;
         let samples: Vec<u16> = match &image {
             DynamicImage::ImageLuma16(samples) => samples.to_vec(),
+            DynamicImage::ImageLuma8(_) if self.depths_of.is_none() && self.scale >= Self::KITTI.scale => {
+                let too_few = format!("has 8 bits, so that no step of 1/{} px is over a pixel", self.scale);
+                return Err(too_few + "; say how many steps are a pixel: --found-scale, --truth-scale");
+            }
             DynamicImage::ImageLuma8(samples) => samples.iter().copied().map(u16::from).collect(),
             _ => return Err("is a picture in colours; disparities are grey, of 8 or 16 bits".to_owned()),
         };
@@ -71,27 +75,47 @@ impl DisparityFile {
     }
 }
 
-/// A truth in px, 0 where a pixel is not scored: where nothing is known, where the mask is not 255, and in
-/// the first columns that are left out.
-pub fn truth(
-    path: &Path,
-    file: &DisparityFile,
-    mask_file: Option<&Path>,
-    first_column: u16,
-) -> Result<FloatMap, EvalError> {
-    let mut map = file.read(path)?;
-    let seen = mask_file.map(|path| mask(path, &map)).transpose()?;
-    let width = map.width.max(1);
-    for (at, value) in map.values.iter_mut().enumerate() {
-        let is_seen = seen.as_ref().is_none_or(|seen| seen[at] == u8::MAX);
-        if !value.is_finite() || !is_seen || at % width < usize::from(first_column) {
-            *value = 0.0;
+/// What is known of a scene, px.
+#[derive(Clone, Debug)]
+pub struct Truth {
+    /// The disparities of the pixels that are scored, 0 of the others.
+    pub scored: FloatMap,
+    /// Those of the pixels that only the left camera sees, 0 of the others, where a mask tells them apart.
+    pub occluded: Option<Vec<f32>>,
+}
+
+impl Truth {
+    /// Reads a truth. Pixels are left out of which nothing is known, and the first columns; where a mask is
+    /// not 255 they are occluded.
+    pub fn read(
+        path: &Path,
+        file: &DisparityFile,
+        mask_file: Option<&Path>,
+        first_column: u16,
+    ) -> Result<Self, EvalError> {
+        let mut scored = file.read(path)?;
+        let width = scored.width.max(1);
+        for (at, value) in scored.values.iter_mut().enumerate() {
+            if !value.is_finite() || at % width < usize::from(first_column) {
+                *value = 0.0;
+            }
         }
+        let mut occluded = None;
+        if let Some(path) = mask_file {
+            let mut behind = vec![0.0; scored.values.len()];
+            let seen = mask(path, &scored)?;
+            for ((value, behind), _) in
+                scored.values.iter_mut().zip(&mut behind).zip(seen).filter(|(_, seen)| *seen != u8::MAX)
+            {
+                *behind = std::mem::take(value);
+            }
+            occluded = Some(behind);
+        }
+        if scored.values.iter().all(|value| *value == 0.0) {
+            return Err(EvalError::new(path, "no pixel of it is known and seen by both cameras"));
+        }
+        Ok(Self { scored, occluded })
     }
-    if map.values.iter().all(|value| *value == 0.0) {
-        return Err(EvalError::new(path, "no pixel of it is known and seen by both cameras"));
-    }
-    Ok(map)
 }
 
 /// A file's bytes, of which there may be as many as of the largest image.
@@ -163,6 +187,18 @@ mod tests {
         let rig = RectifiedRig::with_offset(100.0, 0.2, 10.0, 5.0, 11.0).expect("a rig");
         let file = DisparityFile { scale: 1000.0, depths_of: Some(rig) };
         assert_eq!(read(file, "z.png", &png16(vec![0, 2000])).expect("a map").values, [f32::INFINITY, 9.0]);
+    }
+
+    #[test]
+    fn a_byte_has_too_few_steps_of_a_256th() {
+        let mut png = Cursor::new(Vec::new());
+        let image = ImageBuffer::<Luma<u8>, _>::from_raw(2, 1, vec![0, 40]).expect("a row");
+        image.write_to(&mut png, image::ImageFormat::Png).expect("memory");
+        let png = png.into_inner();
+        let said = read(DisparityFile::KITTI, "d.png", &png).expect_err("no map").to_string();
+        assert!(said.contains("d.png: has 8 bits") && said.contains("--truth-scale"), "{said}");
+        let map = read(DisparityFile { scale: 4.0, depths_of: None }, "d.png", &png).expect("a map");
+        assert_eq!(map.values, [f32::INFINITY, 10.0]);
     }
 
     #[test]

@@ -9,9 +9,8 @@
 //! | this repository's | `SCENE/gt.png`, `meta.json` | `SCENE/nonocc.png` | `SCENE/left.png`, `right.png` |
 //! | `stereo demo`'s | `SCENE/true_disparity.pfm` | | the same |
 
-use super::{DisparityFile, EvalError, truth};
+use super::{DisparityFile, EvalError, Truth};
 use crate::calibration::Calibration;
-use crate::pfm::FloatMap;
 use crate::real;
 use alphanumeric_sort::sort_path_slice;
 use std::fs;
@@ -90,9 +89,9 @@ impl Scene {
         Ok(EvalError::new(folder, what))
     }
 
-    /// What is scored.
-    pub fn read_truth(&self) -> Result<FloatMap, EvalError> {
-        truth(&self.truth, &DisparityFile::KITTI, self.mask.as_deref(), self.first_column)
+    /// What is known of it.
+    pub fn read_truth(&self) -> Result<Truth, EvalError> {
+        Truth::read(&self.truth, &DisparityFile::KITTI, self.mask.as_deref(), self.first_column)
     }
 }
 

@@ -1,5 +1,6 @@
 //! How right answers are, in the measures of the public benchmarks.
 
+use super::Truth;
 use crate::real::Score;
 use crate::sparsification::{Judged, Sparsification};
 use serde::Serialize;
@@ -26,16 +27,22 @@ pub struct Measures {
     /// How far the confidence's order of the answers is from the best one, of the way to a random one;
     /// absent without a confidence.
     pub confidence_from_oracle: Option<f64>,
+    /// The same of the pixels that only the left camera sees, where a mask tells them apart: none of them
+    /// needs an answer.
+    pub occluded: Option<Score>,
 }
 
 impl Measures {
     /// KITTI's limits of a wrong answer, px and a share of the truth.
     const D1: (f32, f32) = (3.0, 0.05);
 
-    /// Compares answers in px, infinite where there is none, with a truth that is 0 where a pixel is not
-    /// scored, both row by row. `None` when no pixel is scored.
-    pub fn of(answers: &[f32], truth: &[f32], confidence: Option<&[u8]>) -> Option<Self> {
-        let score = Score::of(answers.iter().map(|&px| Some(px)), truth)?;
+    /// Compares answers in px, infinite where there is none, with a truth, both row by row. `None` when no
+    /// pixel is scored.
+    pub fn of(answers: &[f32], truth: &Truth, confidence: Option<&[u8]>) -> Option<Self> {
+        let score = |truth: &[f32]| Score::of(answers.iter().map(|&px| Some(px)), truth);
+        let occluded = truth.occluded.as_deref().and_then(score);
+        let truth = truth.scored.values.as_slice();
+        let score = score(truth)?;
         let scored = truth.iter().filter(|px| **px > 0.0).count();
         let both = answers.iter().zip(truth).enumerate();
         let errors: Vec<(usize, f32, f32)> = both
@@ -65,12 +72,15 @@ impl Measures {
             confidence_from_oracle: judged
                 .and_then(|judged| Sparsification::of(&judged))
                 .map(|sparsification| sparsification.from_oracle()),
+            occluded,
         })
     }
 
-    /// The mean of several scenes, which count alike; that of the confidence where every scene has one.
+    /// The mean of several scenes, which count alike; that of the confidence where every scene has one, that
+    /// of occluded pixels of the scenes that have some.
     pub fn mean(of: &[Self]) -> Self {
         let mean = |part: fn(&Self) -> f64| of.iter().map(part).sum::<f64>() / of.len().max(1) as f64;
+        let occluded: Vec<_> = of.iter().filter_map(|m| m.occluded).collect();
         let sure: Option<Vec<f64>> = of.iter().map(|m| m.confidence_from_oracle).collect();
         Self {
             scored: of.iter().map(|m| m.scored).sum(),
@@ -83,6 +93,7 @@ impl Measures {
             confidence_from_oracle: sure
                 .filter(|sure| !sure.is_empty())
                 .map(|sure| sure.iter().sum::<f64>() / sure.len() as f64),
+            occluded: (!occluded.is_empty()).then(|| Score::mean(&occluded)),
         }
     }
 }
@@ -90,27 +101,47 @@ impl Measures {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::pfm::FloatMap;
 
     const NONE: f32 = f32::INFINITY;
+
+    /// A row of a truth.
+    fn truth(scored: &[f32], occluded: Option<&[f32]>) -> Truth {
+        let row = FloatMap { width: scored.len(), height: 1, values: scored.to_vec() };
+        Truth { scored: row, occluded: occluded.map(<[_]>::to_vec) }
+    }
 
     #[test]
     fn worked_by_hand() {
         // Errors 0, 0.75, 1.5, 3.5 (of 100: under 5 %), 4.5 (of 50: over); one without an answer, one not
         // scored.
-        let truth = [10.0, 10.0, 10.0, 100.0, 50.0, 10.0, 0.0];
+        let known = truth(&[10.0, 10.0, 10.0, 100.0, 50.0, 10.0, 0.0], None);
         let answers = [10.0, 10.75, 11.5, 103.5, 54.5, NONE, 1.0];
-        let m = Measures::of(&answers, &truth, Some(&[9, 8, 7, 2, 1, 0, 0])).expect("six are scored");
+        let m = Measures::of(&answers, &known, Some(&[9, 8, 7, 2, 1, 0, 0])).expect("six are scored");
         assert_eq!((m.scored, m.score.density), (6, 5.0 / 6.0));
         assert_eq!([m.bad05, m.bad1, m.score.bad2, m.bad4], [0.8, 0.6, 0.4, 0.2]);
         assert_eq!((m.d1, m.score.missed), (0.2, 0.5));
         assert!((m.epe_px - (0.75 + 1.5 + 3.5 + 4.5) / 5.0).abs() < 1e-6);
         assert_eq!(m.confidence_from_oracle, Some(0.0), "the wrong ones are the least sure");
-        assert_eq!(Measures::of(&answers, &[0.0; 7], None), None);
+        assert_eq!((m.occluded, Measures::of(&answers, &truth(&[0.0; 7], None), None)), (None, None));
+    }
+
+    #[test]
+    fn occluded_pixels_are_counted_apart() {
+        // Three of four have answers, one of which is wrong.
+        let known = truth(&[5.0, 0.0, 0.0, 0.0, 0.0], Some(&[0.0, 1.0, 2.0, 3.0, 4.0]));
+        let m = Measures::of(&[5.0, 1.5, 9.0, NONE, 4.0], &known, None).expect("one is scored");
+        assert_eq!((m.scored, m.score.missed), (1, 0.0));
+        let expected = Score { density: 0.75, bad2: 1.0 / 3.0, missed: 0.5 };
+        assert_eq!(m.occluded, Some(expected));
+        // Of scenes without occluded pixels nothing is known of them.
+        let none = Measures::of(&[5.0], &truth(&[5.0], Some(&[0.0])), None).expect("one is scored");
+        assert_eq!((none.occluded, Measures::mean(&[m, none]).occluded), (None, Some(expected)));
     }
 
     #[test]
     fn a_map_without_answers_has_no_error_and_misses_all() {
-        let m = Measures::of(&[NONE; 2], &[1.0; 2], None).expect("two are scored");
+        let m = Measures::of(&[NONE; 2], &truth(&[1.0; 2], None), None).expect("two are scored");
         assert_eq!((m.score.missed, m.epe_px, m.bad1, m.confidence_from_oracle), (1.0, 0.0, 0.0, None));
     }
 

@@ -3,7 +3,7 @@
 //! In: files of disparities or of depths, a truth, and a mask of what is scored. Out: [`Measures`] of each
 //! scene and their mean.
 //!
-//! * [`DisparityFile`], [`truth`], [`mask`], [`confidence`]: the files.
+//! * [`DisparityFile`], [`Truth`], [`mask`], [`confidence`]: the files.
 //! * [`Scene`]: folders of Middlebury 2014, KITTI, ETH3D and of this repository, told apart by what is in
 //!   them; [`Results`]: folders of results.
 //! * [`OpenCv`]: the matchers of OpenCV, to be beside.
@@ -14,7 +14,7 @@ mod measures;
 mod opencv;
 mod results;
 
-pub use files::{DisparityFile, confidence, mask, truth};
+pub use files::{DisparityFile, Truth, confidence, mask};
 pub use layout::Scene;
 pub use measures::Measures;
 pub use opencv::{OpenCv, OpenCvScene};

@@ -76,6 +76,7 @@ fn two_files() {
     let mean = &masked["mean"];
     assert_eq!((&mean["scored"], &mean["density"]), (&Value::from(3), &Value::from(1.0)));
     assert_eq!(mean["confidence_from_oracle"], 0.0);
+    assert_eq!(mean["occluded"], serde_json::json!({ "density": 0.0, "bad2": 0.0, "missed": 1.0 }));
     // Steps of 1/128 px are twice as many pixels.
     let halves = evaluated(&["--found", &found_png, "--truth", &truth_png, "--found-scale", "128"]);
     assert_eq!(halves["mean"]["bad4"], 1.0);
@@ -133,7 +134,7 @@ fn folders_of_the_public_benchmarks() {
     assert!(table.contains("mean     75.00    66.67    66.67    33.33    33.33    33.33    50.00    2.000"));
     let csv = fs::read_to_string(csv).expect("a file");
     assert!(csv.starts_with("scene,density,bad0.5,"), "{csv}");
-    assert_eq!(csv.lines().last(), Some("mean,75.00,66.67,66.67,33.33,33.33,33.33,50.00,2.000,"));
+    assert_eq!(csv.lines().last(), Some("mean,75.00,66.67,66.67,33.33,33.33,33.33,50.00,2.000,,,"));
 }
 
 #[test]

@@ -14,8 +14,7 @@ use clap::Args;
 use rival::Rival;
 use std::path::{Path, PathBuf};
 use stereopsis_host::calibration::Calibration;
-use stereopsis_host::eval::{DisparityFile, Measures, Results, Scene, confidence, truth};
-use stereopsis_host::pfm::FloatMap;
+use stereopsis_host::eval::{DisparityFile, Measures, Results, Scene, Truth, confidence};
 use stereopsis_host::real::Alteration;
 use table::{Evaluated, Evaluation, Scenes};
 
@@ -140,7 +139,7 @@ fn found_file(args: &EvalArgs) -> Result<DisparityFile, Failure> {
 /// A file beside a file.
 fn of_files(args: &EvalArgs, found: &Path, truth_path: &Path) -> Result<Evaluated, Failure> {
     let of_truth = DisparityFile { scale: args.truth_scale, depths_of: None };
-    let truth = truth(truth_path, &of_truth, args.mask.as_deref(), 0)?;
+    let truth = Truth::read(truth_path, &of_truth, args.mask.as_deref(), 0)?;
     let name = found.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let file = found_file(args)?;
     compared(&file, name, found, args.confidence.as_deref(), &truth)
@@ -171,12 +170,12 @@ fn compared(
     scene: String,
     found: &Path,
     sure: Option<&Path>,
-    truth: &FloatMap,
+    truth: &Truth,
 ) -> Result<Evaluated, Failure> {
-    let answers = file.read_beside(found, truth)?;
-    let sure = sure.map(|path| confidence(path, truth)).transpose()?;
+    let answers = file.read_beside(found, &truth.scored)?;
+    let sure = sure.map(|path| confidence(path, &truth.scored)).transpose()?;
     // A truth has scored pixels, else it is refused.
-    let measures = Measures::of(&answers.values, &truth.values, sure.as_deref()).unwrap_or_default();
+    let measures = Measures::of(&answers.values, truth, sure.as_deref()).unwrap_or_default();
     Ok(Evaluated { scene, disparities: None, time_ms: None, measures })
 }
 
@@ -190,12 +189,13 @@ fn by_matching(
     let truth = scene.read_truth()?;
     let (mut pair, [left, right]) = altered::pair(scene, args.altered, seed)?;
     let (width, height) = (pair.width, pair.height);
-    if (truth.width, truth.height) != (usize::from(width), usize::from(height)) {
+    let size = (truth.scored.width, truth.scored.height);
+    if size != (usize::from(width), usize::from(height)) {
         return Err(Failure::new(format!(
             "{}: is {} x {} px, and the images {width} x {height} px; give the truth of these images",
             scene.truth.display(),
-            truth.width,
-            truth.height
+            size.0,
+            size.1
         )));
     }
     let stated = scene.disparities.map(|n| Disparities::Count(n.min(width)));
@@ -213,7 +213,7 @@ fn by_matching(
     }
     let Matched { config, outcome, .. } = matched(&args.method, &args.balance, config, &mut pair.camera)?;
     let map = &outcome.map;
-    let measures = Measures::of(&map.pixels(), &truth.values, Some(&map.confidence)).unwrap_or_default();
+    let measures = Measures::of(&map.pixels(), &truth, Some(&map.confidence)).unwrap_or_default();
     Ok(Evaluated {
         scene: scene.name.clone(),
         disparities: Some(config.disparities),

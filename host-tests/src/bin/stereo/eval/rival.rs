@@ -43,7 +43,7 @@ impl Rival {
         self.opencv.run(self.folder.path(), &searched.collect::<Vec<_>>())?;
         let evaluated = |matcher: &str, scene: &Scene, name: &str| {
             let (truth, found) = (scene.read_truth()?, OpenCv::answers(self.folder.path(), name, matcher)?);
-            let measures = Measures::of(&found.values, &truth.values, None).unwrap_or_default();
+            let measures = Measures::of(&found.values, &truth, None).unwrap_or_default();
             Ok(Evaluated { scene: scene.name.clone(), disparities: None, time_ms: None, measures })
         };
         let beside = |matcher: &str| {

@@ -58,7 +58,7 @@ pub struct Evaluation {
 /// The columns of a table: names, digits behind the point, and values; shares are in percent.
 type Column = (&'static str, usize, fn(&Measures) -> Option<f64>);
 
-const COLUMNS: [Column; 9] = [
+const COLUMNS: [Column; 11] = [
     ("density", 2, |m| Some(100.0 * m.score.density)),
     ("bad0.5", 2, |m| Some(100.0 * m.bad05)),
     ("bad1", 2, |m| Some(100.0 * m.bad1)),
@@ -68,6 +68,8 @@ const COLUMNS: [Column; 9] = [
     ("missed", 2, |m| Some(100.0 * m.score.missed)),
     ("EPE,px", 3, |m| Some(m.epe_px)),
     ("unsure", 2, |m| m.confidence_from_oracle.map(|share| 100.0 * share)),
+    ("occluded", 2, |m| m.occluded.map(|score| 100.0 * score.density)),
+    ("occ-bad2", 2, |m| m.occluded.map(|score| 100.0 * score.bad2)),
 ];
 
 impl Evaluation {
@@ -98,7 +100,8 @@ impl Evaluation {
             }
         }
         text += "\nin percent: bad and D1 of the answers, missed of the scored pixels (no answer, or over 2 \
-                 px off), unsure of the\nway from the best order of the answers to a random one\n";
+                 px off), unsure of the\nway from the best order of the answers to a random one; occluded: \
+                 pixels that only the left camera\nsees and that have an answer, occ-bad2 of these answers\n";
         if let Some(altered) = &self.altered {
             let _ = writeln!(text, "images altered: {altered}");
         }

@@ -107,12 +107,19 @@ macro_rules! two_anywhere {
     };
 }
 
+/// On to the next four, if there is one: written where each way to four pixels ends, a branch fewer.
+macro_rules! next_four {
+    () => {
+        concat!("add r3, r3, r7\n", "subs r6, r6, #0x1000000\n", "bhs 2b\n")
+    };
+}
+
 /// Interpolates pixels in fours, the first at index `at` of lines of `W` pixels, at places in these runs;
 /// returns how many fours it did. It stops before one that reaches into rows beyond the lines, and does none
 /// where steps are not gentle or places may leave the lines.
 ///
-/// 57 instructions for four pixels that are a raw column apart between the same two rows, 85 where they are
-/// not a column apart, about 117 where they lie within three rows.
+/// 57 instructions for four pixels that are a raw column apart between the same two rows, 83 where they are
+/// not a column apart, about 113 where they lie within three rows.
 ///
 /// ```text
 /// r0, r1       the first pixel's upper left neighbour, where the pixel goes
@@ -185,17 +192,13 @@ pub(super) fn fours<const W: usize>(
             "orr r8, r8, r9, lsl #8",
             "str r8, [r1], #4",
             "add r2, r2, r3",
-            "3:",
-            "add r3, r3, r7",
-            "subs r6, r6, #0x1000000",
-            "bhs 2b",
+            next_four!(),
             "b 8f",
             // Where columns come closer, from the column before on, with a fraction that overflows.
             "4:",
-            "tst r3, #0x8000",
-            "itt ne",
-            "addne r2, r2, #0x8000",
-            "subne r0, r0, #1",
+            "ubfx lr, r3, #15, #1",
+            "add r2, r2, lr, lsl #15",
+            "sub r0, r0, lr",
             "adds lr, r2, r3, lsl #2",
             "bmi 5f",
             apart!("0", "r8"),
@@ -210,7 +213,8 @@ pub(super) fn fours<const W: usize>(
             "ubfx lr, r2, #15, #1",
             "add r0, r0, lr",
             "bic r2, r2, #0x8000",
-            "b 3b",
+            next_four!(),
+            "b 8f",
             // The four ends a row below or above: fractions and steps in a register each, and whether that
             // row is among the lines.
             "5:",
@@ -218,12 +222,10 @@ pub(super) fn fours<const W: usize>(
             "lsr r9, r2, #16",
             "sxth r10, r3",
             "sub r11, r3, r10",
-            "asr r11, r11, #16",
-            "adds lr, r9, r11, lsl #2",
+            "asrs r11, r11, #16",
             "bmi 6f",
             "ldr lr, [sp, #12]",
-            "add r12, r0, #{width} + 1",
-            "cmp r12, lr",
+            "cmp r0, lr",
             "bhi 8f",
             "b 7f",
             "6:",
@@ -243,7 +245,7 @@ pub(super) fn fours<const W: usize>(
             "ubfx r2, r8, #0, #15",
             "bfi r2, r9, #16, #15",
             "add r3, r10, r11, lsl #16",
-            "b 3b",
+            next_four!(),
             // How many are left, none where the count went below 0.
             "8:",
             "add r0, r6, #0x1000000",
@@ -256,7 +258,7 @@ pub(super) fn fours<const W: usize>(
             inout("r3") halves(column.step.wrapping_sub(one), row.step) => _,
             inout("r8") count.wrapping_sub(1) => _,
             in("r9") lines.as_ptr(),
-            in("r10") lines.as_ptr().wrapping_add(most),
+            in("r10") lines.as_ptr().wrapping_add(most).wrapping_sub(W + 1),
             inout("r11") halves(column.bend, row.bend) => _,
             out("r4") _, out("r5") _, out("r12") _, out("lr") _,
         );

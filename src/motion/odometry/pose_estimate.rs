@@ -62,7 +62,7 @@ pub(super) struct Solved<T: Real> {
 
 /// The least number of inliers that make a pose.
 pub(super) const FEWEST: usize = 8;
-/// Distances, in deviations, at which a point_match has no weight any more: from far to near.
+/// Distances, in deviations, at which a match has no weight any more: from far to near.
 const WIDTHS: [f64; 3] = [12.0, 7.0, 4.5];
 /// Steps for each width at most.
 const STEPS: usize = 6;
@@ -86,7 +86,7 @@ pub(super) struct Problem<'a, T: Real> {
 }
 
 impl<T: Real> Problem<'_, T> {
-    /// The likeliest pose near a start: each point_match's distance is in units of the observation's noise
+    /// The likeliest pose near a start: each match's distance is in units of the observation's noise
     /// and the point's own uncertainty together, which to first order is as if points and pose were found
     /// together.
     pub fn solve(&self, start: Pose<T>, free: Free) -> Solved<T> {
@@ -155,7 +155,7 @@ impl<T: Real> Problem<'_, T> {
         Some((whitener.apply(&off), whitener.apply(&(seen * moved.by_pose))))
     }
 
-    /// The squared distance of a point_match, in deviations.
+    /// The squared distance of a match, in deviations.
     pub fn squared(&self, pose: &Pose<T>, point_match: &PointMatch<T>) -> Option<T> {
         self.residual(pose, point_match).map(|(off, _)| off.norm_squared())
     }

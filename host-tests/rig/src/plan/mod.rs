@@ -257,6 +257,23 @@ mod tests {
     }
 
     #[test]
+    fn what_is_beyond_the_end_of_a_search_is_named() {
+        // 50 px m and an offset of 10 px: 5 m is at a disparity of 0, and 20 m 7.5 px below.
+        let rig = Rig { offset_px: 10.0, ..RIG };
+        let plan = |rig: Rig, farthest_m: f64| {
+            Plan::new(rig, Wanted { nearest_m: 1.0, farthest_m, accuracy: 1.0, ..Wanted::default() })
+        };
+        let beyond = plan(rig, 20.0);
+        assert_eq!(beyond.end_m, Some(5.0));
+        let limit = "the search: 20 m is at a disparity of -7.5 px, below 0; nothing is told beyond 5.00 m";
+        assert_eq!(beyond.limits[0], limit);
+        assert_eq!(beyond.changes[0], "images with the same principal point would reach infinity");
+        for sound in [plan(rig, 5.0), plan(RIG, 20.0)] {
+            assert!(sound.limits.iter().all(|limit| !limit.contains("below 0")), "{:?}", sound.limits);
+        }
+    }
+
+    #[test]
     fn distances_end_with_the_range() {
         assert_eq!(distances(0.3, 5.2), [0.3, 0.5, 1.0, 2.0, 5.2]);
     }

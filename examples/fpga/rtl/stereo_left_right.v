@@ -7,7 +7,9 @@
 `default_nettype none
 
 module stereo_left_right #(
-    parameter DISPARITIES = 64
+    parameter DISPARITIES = 64,
+    // Whether the pixels of an offer may be compared.
+    parameter COMPARES = 0
 ) (
     input wire clk,
     input wire reset,
@@ -30,10 +32,12 @@ module stereo_left_right #(
     input wire [7:0] second,
     // Whether an offer also costs four times what its pixels differ by, at most 255 in all; the smallest
     // disparity, and the column's left pixel and right one.
+    // verilator lint_off UNUSEDSIGNAL
     input wire compares,
     input wire [7:0] least,
     input wire [7:0] left,
     input wire [7:0] right,
+    // verilator lint_on UNUSEDSIGNAL
     // A record: first and last of a frame and of a row, and its eight bytes.
     output reg record_valid,
     output reg [65:0] record
@@ -41,50 +45,78 @@ module stereo_left_right #(
     localparam BITS = $clog2(2 * DISPARITIES);
     localparam SLOTS = 1 << BITS;
 
-    // The pixel of the clock before, its place in the ring and that of the right column that it chose.
+    // A pixel as it comes, and what it offers: its cost or, a clock later, what its partner adds to it.
+    wire comes, comes_pixel, comes_winner;
+    wire [49:0] coming;
+    wire [7:0] offered;
+    generate
+        if (COMPARES == 0) begin : by_cost
+            assign comes = valid;
+            assign comes_pixel = is_pixel;
+            assign comes_winner = is_pixel && has_winner;
+            assign coming = {is_first, is_last, row, second, best, above, cost, below};
+            assign offered = cost;
+        end else begin : by_pixels
+            // The right pixels, each where the column looks for it whose smallest disparity leads there.
+            reg [7:0] rights [0:511];
+            reg [8:0] place, own_place;
+            reg [7:0] own_left;
+            reg has_pixels, came, came_pixel, came_winner;
+            reg [49:0] came_with;
+            always @(posedge clk) begin
+                if (reset || begins) begin
+                    place <= 0;
+                    came <= 1'b0;
+                end else if (go) begin
+                    if (valid) place <= place + 1'b1;
+                    came <= valid;
+                end
+                if (go && valid) rights[place + {1'b0, least}] <= right;
+                if (go) begin
+                    own_place <= place;
+                    own_left <= left;
+                    has_pixels <= compares;
+                    came_pixel <= is_pixel;
+                    came_winner <= is_pixel && has_winner;
+                    came_with <= {is_first, is_last, row, second, best, above, cost, below};
+                end
+            end
+            wire [7:0] of_partner = rights[own_place - {1'b0, came_with[31:24]}];
+            wire [7:0] apart = own_left > of_partner ? own_left - of_partner : of_partner - own_left;
+            wire [10:0] dear = {3'b0, came_with[15:8]} + {1'b0, apart, 2'b0};
+            assign comes = came;
+            assign comes_pixel = came_pixel;
+            assign comes_winner = came_winner;
+            assign coming = came_with;
+            assign offered = !has_pixels ? came_with[15:8] : dear[10:8] != 0 ? 8'hff : dear[7:0];
+        end
+    endgenerate
+
+    // The pixel a clock later, its place in the ring, that of the right column that it chose, and its offer.
     reg [BITS-1:0] slot;
     reg [BITS-1:0] here;
     reg [BITS-1:0] chosen;
     reg moves, holds_pixel, chooses, chooses_own;
     reg [49:0] pixel;
+    reg [7:0] offer;
     always @(posedge clk) begin
         if (reset || begins) begin
             slot <= 0;
             moves <= 1'b0;
         end else if (go) begin
-            if (valid) slot <= slot + 1'b1;
-            moves <= valid;
+            if (comes) slot <= slot + 1'b1;
+            moves <= comes;
         end
         if (go) begin
             here <= slot;
-            chosen <= slot - best[BITS-1:0];
-            chooses_own <= best == 0;
-            holds_pixel <= is_pixel;
-            chooses <= is_pixel && has_winner;
-            pixel <= {is_first, is_last, row, second, best, above, cost, below};
+            chosen <= slot - coming[24 +: BITS];
+            chooses_own <= coming[31:24] == 0;
+            holds_pixel <= comes_pixel;
+            chooses <= comes_winner;
+            pixel <= coming;
+            offer <= offered;
         end
     end
-
-    // The right pixels, each where the column looks for it whose smallest disparity leads there, and what the
-    // pixel offers.
-    reg [7:0] rights [0:511];
-    reg [8:0] place, own_place;
-    reg [7:0] own_left;
-    reg has_pixels;
-    always @(posedge clk) begin
-        if (reset || begins) place <= 0;
-        else if (go && valid) place <= place + 1'b1;
-        if (go && valid) rights[place + {1'b0, least}] <= right;
-        if (go) begin
-            own_place <= place;
-            own_left <= left;
-            has_pixels <= compares;
-        end
-    end
-    wire [7:0] of_partner = rights[own_place - {1'b0, pixel[31:24]}];
-    wire [7:0] apart = own_left > of_partner ? own_left - of_partner : of_partner - own_left;
-    wire [10:0] dear = {3'b0, pixel[15:8]} + {1'b0, apart, 2'b0};
-    wire [7:0] offer = !has_pixels ? pixel[15:8] : dear[10:8] != 0 ? 8'hff : dear[7:0];
 
     // What each slot's right column keeps.
     reg [SLOTS-1:0] taken;

@@ -133,7 +133,7 @@ module stereo_search #(
     wire made;
     wire [65:0] made_record;
 
-    stereo_left_right #(.DISPARITIES(DISPARITIES)) left_right (
+    stereo_left_right #(.DISPARITIES(DISPARITIES), .COMPARES(COMPARES)) left_right (
         .clk(clk), .reset(forgets), .go(go), .begins(begins), .disparities(disparities[SLOT_BITS-1:0]),
         .valid(told), .compares(teller[43]), .least(least), .left(teller[60:53]), .right(teller[52:45]), .is_pixel(teller[42]),
         .has_winner(teller[44]), .is_first(teller[41]),

@@ -45,7 +45,7 @@ module stereo_left_right #(
     localparam BITS = $clog2(2 * DISPARITIES);
     localparam SLOTS = 1 << BITS;
 
-    // A pixel as it comes, and what it offers: its cost or, a clock later, what its partner adds to it.
+    // A pixel and what it offers: its cost, as it comes, or a clock later its cost with what the pixels add.
     wire comes, comes_pixel, comes_winner;
     wire [49:0] coming;
     wire [7:0] offered;

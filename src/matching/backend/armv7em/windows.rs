@@ -61,7 +61,9 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
         }
         // One by one where they are judged, for their sums are looked at.
         let many = match x {
-            _ if x == 0 || is_checked || !in_assembly => 1,
+            _ if x == 0 || is_checked => 1,
+            _ if STRIDE == 0 && x >= disparities => winners.len(),
+            _ if !in_assembly => 1,
             _ if x < disparities => sums - x,
             _ => winners.len(),
         };
@@ -71,6 +73,8 @@ pub(super) fn select<S: WindowParameters, const STRIDE: usize>(
         x += next.len();
         if in_assembly && candidates > 1 {
             run::<S, STRIDE>(few, room, columns, next);
+        } else if STRIDE == 0 && candidates > 1 {
+            each_among::<S>(candidates, columns, room, next);
         } else if let Some(winner) = next.first_mut() {
             *winner = match candidates {
                 1 => at_an_end(room.get(1).map_or(0, |sum| sum << 8 & 0xff00), 1, view::<u32, u8>(room)),
@@ -118,6 +122,29 @@ fn run<S: WindowParameters, const STRIDE: usize>(
         (2, 48) => run!(block_48),
         (2, 64) => run!(block_64),
         _ => {}
+    }
+}
+
+/// Moves the window on, a column for each of the winners, which are among so many candidates.
+#[inline(never)]
+fn each_among<S: WindowParameters>(
+    candidates: usize,
+    mut columns: &[u32],
+    room: &mut [u32],
+    winners: &mut [Winner],
+) {
+    let words = room.len() - 2;
+    for winner in winners {
+        keep_loop();
+        let enters = part(columns, (rows::ACROSS * words).min(columns.len())..);
+        *winner = if candidates == 4 * words {
+            let sums = part_mut(room, 1..=words);
+            let (least, places) = rows::slide::<S>(sums, enters, columns, candidates / STEP);
+            winner_of(of_lanes(least, places), candidates, room)
+        } else {
+            next_among::<S>(candidates, enters, columns, room)
+        };
+        columns = part(columns, words..);
     }
 }
 

@@ -20,6 +20,27 @@ const TOP: u32 = 0x8080_8080;
 /// A one in each lane.
 const ONE: u32 = 0x0101_0101;
 
+/// The bits below the top one of each lane whose top bit is set, where lanes have one bit more than `BITS`
+/// and none is set but top bits.
+#[inline(always)]
+pub(in crate::matching::backend) fn below_tops<const BITS: u32>(tops: u32) -> u32 {
+    let is_fast = cfg!(all(target_arch = "riscv32", target_feature = "m", not(stereopsis_portable)));
+    if is_fast { by_product::<BITS>(tops) } else { by_shift::<BITS>(tops) }
+}
+
+#[inline(always)]
+fn by_shift<const BITS: u32>(tops: u32) -> u32 {
+    tops - (tops >> BITS)
+}
+
+/// The same in one instruction where one gives the upper half of a product, RV32's `mulhu`: a number times
+/// 1 - 1 / 2^`BITS`.
+#[inline(always)]
+fn by_product<const BITS: u32>(tops: u32) -> u32 {
+    let factor = 0u32.wrapping_sub(1 << (32 - BITS));
+    (u64::from(tops) * u64::from(factor) >> 32) as u32
+}
+
 /// Whether something holds for the bytes of each lane.
 #[inline(always)]
 fn lanes(a: Word, b: Word, holds: impl Fn(i16, i16) -> bool) -> bool {
@@ -100,7 +121,7 @@ impl Group for Word {
         // 128 more in each lane, not the top bit set: the sum with what is over 127 counts.
         let difference = self.0.wrapping_add(TOP).wrapping_sub(other.0);
         let not_less = difference & TOP;
-        Self(difference & (not_less - (not_less >> 7)))
+        Self(difference & below_tops::<7>(not_less))
     }
 
     #[inline(always)]
@@ -202,7 +223,7 @@ impl Group for Word {
                     let key = costs | place;
                     let difference = (*least | HALVES) - key;
                     let not_less = difference & HALVES;
-                    *least -= difference & (not_less - (not_less >> 15));
+                    *least -= difference & below_tops::<15>(not_less);
                 }
                 place -= 0x0001_0001;
             }
@@ -271,6 +292,19 @@ mod tests {
         check(|_, b| b < 128, Word::plus_saturating, |a, b| (a + b).min(255));
         check(near, Word::minus_saturating, |a, b| (a - b).max(0));
         check(near, Word::apart, |a, b| (a - b).abs());
+    }
+
+    #[test]
+    fn bits_below_tops() {
+        for lanes in 0..16u32 {
+            let tops = (0..4).map(|lane| (lanes >> lane & 1) << (8 * lane + 7)).sum();
+            assert_eq!(by_product::<7>(tops), tops / 128 * 127, "{tops:08x}");
+            assert_eq!(by_shift::<7>(tops), tops / 128 * 127, "{tops:08x}");
+        }
+        for tops in [0, 0x8000, 0x8000_0000, 0x8000_8000] {
+            assert_eq!(by_product::<15>(tops), tops / 0x8000 * 0x7fff, "{tops:08x}");
+            assert_eq!(by_shift::<15>(tops), tops / 0x8000 * 0x7fff, "{tops:08x}");
+        }
     }
 
     #[test]

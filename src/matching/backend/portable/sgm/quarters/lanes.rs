@@ -4,6 +4,8 @@
 //! less one that is not is 128 and their difference, whose top bit says whether it is not negative. Nothing
 //! is carried from lane to lane.
 
+use crate::matching::backend::portable::words::below_tops;
+
 /// The top bit of each lane.
 pub(super) const TOP: u32 = 0x8080_8080;
 /// A one in each lane.
@@ -18,15 +20,13 @@ pub(super) const fn splat(number: u32) -> u32 {
 /// What each lane is over 128, or 0.
 #[inline(always)]
 pub(super) fn over(difference: u32) -> u32 {
-    let top = difference & TOP;
-    difference & (top - (top >> 7))
+    difference & below_tops::<7>(difference & TOP)
 }
 
 /// Each lane, or 128 where it is more.
 #[inline(always)]
 pub(super) fn up_to_top(difference: u32) -> u32 {
-    let top = difference & TOP;
-    difference & !(top - (top >> 7))
+    difference - over(difference)
 }
 
 /// The lesser of two numbers, the first of which is marked, as the lesser is.
@@ -48,16 +48,17 @@ pub(super) fn least_of_four(marked: u32) -> u32 {
     lesser(two, two >> 8 & !TOP) & 0x7f
 }
 
-/// The lanes of word `word` of `words` whose candidates are before the one at `place`, where the candidates
-/// of a lane stand one after the other, those of the next lane after them.
+/// The lanes of each of so many words whose candidates are before the one at `place`, where the candidates of
+/// a lane stand one after the other, those of the next lane after them.
 #[inline(always)]
-pub(super) fn before(place: usize, word: usize, words: usize) -> u32 {
+pub(super) fn before(place: usize, words: usize) -> impl Fn(usize) -> u32 {
     let (mut lanes, mut rest) = (0u32, place);
-    while rest > word && lanes != u32::MAX {
+    while rest >= words && lanes != u32::MAX {
         lanes = lanes << 8 | 0xff;
-        rest = rest.saturating_sub(words);
+        rest -= words;
     }
-    lanes
+    let next = lanes << 8 | 0xff;
+    move |word| if word < rest { next } else { lanes }
 }
 
 #[cfg(test)]
@@ -102,7 +103,7 @@ mod tests {
             for place in 0..=4 * words {
                 for word in 0..words {
                     let lanes = each(|lane| if lane * words + word < place { 0xff } else { 0 });
-                    assert_eq!(before(place, word, words), lanes, "{place} {word} {words}");
+                    assert_eq!(before(place, words)(word), lanes, "{place} {word} {words}");
                 }
             }
         }

@@ -79,8 +79,9 @@ pub(super) fn beside(column: &[Cell<u32>], far: u32) -> [u32; 2] {
 #[inline(never)]
 pub(super) fn close(cells: &[Cell<u32>], place: usize, far: u32) -> u32 {
     let mut least = u32::MAX;
+    let closed = before(place, cells.len());
     for (word, cell) in cells.iter().enumerate() {
-        let lanes = before(place, word, cells.len());
+        let lanes = closed(word);
         cell.set(cell.get() & !lanes | splat(far) & lanes);
         least = lesser(least, cell.get());
     }

@@ -44,7 +44,7 @@ pub(super) fn left<const WORDS: usize, const ALL: bool, Put: FnMut(usize, Found)
         let closed = 4 * count - candidates;
         let mut columns = [&*paths, &*sums];
         if closed > 0 {
-            close_sums(paths, sums, open, |word| before(closed, word, count));
+            close_sums(paths, sums, open, before(closed, count));
             columns = [open, sums];
         }
         let found = rounds::winner(columns, candidates, more);
@@ -83,11 +83,9 @@ fn second(
     // It is rarely asked for: its loops are not unrolled, whatever is known of the column where it is.
     let sums = core::hint::black_box(sums);
     let count = sums.len();
-    close_sums(path, sums, open, |word| {
-        let around =
-            before(winner + BESIDE + 1, word, count) & !before(winner.saturating_sub(BESIDE), word, count);
-        before(closed, word, count) | around
-    });
+    let [closed, below, around] =
+        [closed, winner.saturating_sub(BESIDE), winner + BESIDE + 1].map(|place| before(place, count));
+    close_sums(path, sums, open, |word| closed(word) | around(word) & !below(word));
     rounds::winner([open, sums], 1, more).cost
 }
 

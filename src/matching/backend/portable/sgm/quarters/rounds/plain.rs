@@ -8,6 +8,7 @@ use crate::matching::backend::portable::sgm::quarters::lanes::{
 };
 use crate::matching::backend::portable::sgm::quarters::others::{Costs, Others};
 use crate::matching::backend::portable::sgm::quarters::steps::{Change, Steps, beside};
+use crate::matching::backend::portable::words::below_tops;
 use crate::matching::memory::slices::{chunks_mut, part};
 use crate::matching::memory::views::view;
 use crate::matching::memory::winners::Found;
@@ -184,8 +185,7 @@ pub fn winner([path, sums]: [&[u32]; 2], candidates: usize, more: u32) -> Found 
     let mut place = (count as u32).wrapping_mul(0x0001_0001);
     let lesser = |marked: u32, key: u32| {
         let difference = marked.wrapping_sub(key);
-        let top = difference & TOP;
-        marked - (difference & (top - (top >> 15)))
+        marked - (difference & below_tops::<15>(difference & TOP))
     };
     for (path, sums) in path.as_chunks::<FOUR>().0.iter().zip(sums.as_chunks::<FOUR>().0) {
         keep_loop();
@@ -193,7 +193,7 @@ pub fn winner([path, sums]: [&[u32]; 2], candidates: usize, more: u32) -> Found 
             // A sum above the number of its word, counted down.
             place = place.wrapping_sub(0x0001_0001);
             even = lesser(even, (((path & HALVES) + (sum & HALVES)) << PLACE) + place);
-            odd = lesser(odd, (((path >> 8 & HALVES) + (sum >> 8 & HALVES)) << PLACE) + place);
+            odd = lesser(odd, ((path & !HALVES) >> (8 - PLACE)) + ((sum & !HALVES) >> (8 - PLACE)) + place);
         }
     }
     // The sums above the disparities.

@@ -177,6 +177,57 @@ fn pose_of_the_second_camera() {
     }
 }
 
+/// One camera for both images, whose lens draws in what is `r` from the middle to `r - 0.3 r^3`, and no
+/// farther than 0.7.
+fn with_a_lens(matches: &str) -> (String, String) {
+    let (f, cx, cy) = CAMERA;
+    let mut lines = matches.lines();
+    let mut text = format!("{}\n", lines.next().expect("a header"));
+    for line in lines {
+        let [a, b, c, d]: [f64; 4] = std::array::from_fn(|i| {
+            line.split(',').nth(i).and_then(|number| number.parse().ok()).expect("a number")
+        });
+        let [(a, b), (c, d)] = [(a, b), (c, d)].map(|(u, v)| {
+            let (x, y) = ((u - cx) / f, (v - cy) / f);
+            let scale = 1.0 - 0.3 * (x * x + y * y);
+            (f * x * scale + cx, f * y * scale + cy)
+        });
+        writeln!(text, "{a:.6},{b:.6},{c:.6},{d:.6}").expect("to a string");
+    }
+    let calibration = format!(
+        "image_width: 640\nimage_height: 480\ncamera_name: c\ncamera_matrix: {{rows: 3, cols: 3, data: \
+         [{f}, 0, {cx}, 0, {f}, {cy}, 0, 0, 1]}}\ndistortion_model: plumb_bob\ndistortion_coefficients: \
+         {{rows: 1, cols: 5, data: [-0.3, 0, 0, 0, 0]}}\n"
+    );
+    (text, calibration)
+}
+
+#[test]
+fn a_match_that_the_lens_has_no_sight_for_is_no_inlier() {
+    let (file, calibration) = with_a_lens(&matches(100, true, false));
+    let bench = bench(&file);
+    bench.put("calib.txt", calibration.as_bytes());
+    let without = answer(&bench, "pose", &[]);
+    let (right, wrong) = kept(&without);
+    assert!(right == 80 && wrong <= 3, "{right} {wrong}");
+    let (header, rest) = file.split_once('\n').expect("lines");
+    bench.put("m.csv", format!("{header}\n1200,240,320,240\n{rest}320,240,320,900\n").as_bytes());
+    let run = stereo(arguments(&bench, "pose", &[]));
+    let said = text(&run.stderr);
+    assert!(run.status.success() && said.contains("no sight for 2 of 102 matches"), "{said}");
+    let json = std::fs::read(bench.path("out/answer.json")).expect("the answer");
+    let mut with: Value = serde_json::from_slice(&json).expect("an object");
+    for list in ["inliers", "points"] {
+        let list = with[list].as_array_mut().expect("a list");
+        assert_eq!(list.len(), 102);
+        let ends = [list.remove(0), list.pop().expect("the last")];
+        assert!(ends.iter().all(|end| *end == Value::Null || *end == Value::Bool(false)), "{ends:?}");
+    }
+    assert_eq!(with, without);
+    bench.put("m.csv", format!("{header}\n{}", "1200,240,320,240\n".repeat(20)).as_bytes());
+    bench.refused(&arguments(&bench, "pose", &[]), "no sight for any of 20 matches");
+}
+
 #[test]
 fn bad_matches() {
     let bench = bench("");

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::fundamental::{by_chance, why};
 use crate::place::json_file;
-use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
+use crate::shared::{RobustArgs, TwoViewMethod, print, remark, rows};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -57,6 +57,18 @@ struct Answer {
     model: &'static str,
 }
 
+impl Answer {
+    /// The answer for all matches, of one for those that are in sight: the others are no inliers.
+    fn among<T>(self, in_sight: &[Option<T>]) -> Self {
+        let (mut points, mut inliers) = (self.points.into_iter(), self.inliers.into_iter());
+        Self {
+            points: in_sight.iter().map(|s| s.as_ref().and_then(|_| points.next()?)).collect(),
+            inliers: in_sight.iter().map(|s| s.is_some() && inliers.next() == Some(true)).collect(),
+            ..self
+        }
+    }
+}
+
 /// A threshold that no match of two images is beyond, px.
 const ANY_DISTANCE: f64 = 1e6;
 
@@ -66,14 +78,27 @@ type Start = (Essential<f64>, &'static str);
 pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     let seen = read_matches(&args.matches)?;
     let cameras = Cameras::open(&args.calib)?;
-    let (mut answer, rms) = solve(&seen, &cameras, &args.robust)
-        .map_err(|why| Failure::new(format!("{}: {why}", args.matches.display())))?;
+    let in_sight: Vec<_> = seen.iter().map(|s| undistorted(s, &cameras)).collect();
+    let left: Vec<_> = in_sight.iter().flatten().copied().collect();
+    let blind = seen.len() - left.len();
+    let named = |why| Failure::new(format!("{}: {why}", args.matches.display()));
+    if left.is_empty() && blind > 0 {
+        return Err(named(format!("the lenses' coefficients describe no sight for any of {blind} matches")));
+    }
+    let (answer, rms) = solve(&left, &cameras, &args.robust).map_err(named)?;
+    let mut answer = answer.among(&in_sight);
     // A zero's sign says nothing.
     answer.translation.iter_mut().for_each(|x| *x += 0.0);
     json_file(&args.out, &answer)?;
     let (kept, points) =
         (answer.inliers.iter().filter(|&&i| i).count(), answer.points.iter().flatten().count());
     let n = seen.len();
+    if blind > 0 {
+        let file = args.matches.display();
+        remark(&format!(
+            "note: {file}: the lenses' coefficients describe no sight for {blind} of {n} matches: no inliers"
+        ));
+    }
     print(&format!(
         "{kept} of {n} matches within {} px ({rms:.3} px RMS), {points} points, by the {} matrix\n",
         args.robust.threshold, answer.model
@@ -106,11 +131,10 @@ fn solve(
     args: &RobustArgs,
 ) -> Result<(Answer, f64), String> {
     let (first, second) = (pinhole(&cameras.first)?, pinhole(&cameras.second)?);
-    let seen = undistorted(seen, cameras)?;
-    let mut starts = start(&seen, &first, &second, args)?;
+    let mut starts = start(seen, &first, &second, args)?;
     if args.method == TwoViewMethod::Ransac {
         let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
-        let found = robust_essential(&seen, &first, &second, &config, &mut vec![false; seen.len()]);
+        let found = robust_essential(seen, &first, &second, &config, &mut vec![false; seen.len()]);
         starts.extend(found.map(|found| (found.essential, "essential")));
     }
     let mut best: Option<Found> = None;
@@ -118,8 +142,8 @@ fn solve(
     for (essential, model) in starts {
         let refined = match args.method {
             // Every match counts alike, however far off it is.
-            TwoViewMethod::EightPoint => essential.refined(&seen, &first, &second, ANY_DISTANCE),
-            TwoViewMethod::Ransac => essential.refined(&seen, &first, &second, args.threshold),
+            TwoViewMethod::EightPoint => essential.refined(seen, &first, &second, ANY_DISTANCE),
+            TwoViewMethod::Ransac => essential.refined(seen, &first, &second, args.threshold),
         };
         let refined = refined.map_err(|e| e.to_string())?;
         let f = Fundamental::from_essential(&refined, &first, &second);
@@ -147,7 +171,7 @@ fn solve(
     }
     let Found { rms, essential, pose, inliers, model, .. } = best.ok_or(why)?;
     let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
-    by_chance(&seen, kept.len(), args)?;
+    by_chance(seen, kept.len(), args)?;
     // Exact matches have the noise of their digits.
     if let Some(degrees) = only_turned(&kept, &essential, [&first, &second], rms.max(0.01)) {
         return Err(format!("the camera has only turned, by {degrees:.2} degrees: there is no translation"));
@@ -232,14 +256,9 @@ fn pinhole(camera: &Camera<f64>) -> Result<Camera<f64>, String> {
     Camera::from_matrix(&camera.matrix()).map_err(|e| e.to_string())
 }
 
-/// The matches as cameras without lenses would show them.
-fn undistorted(seen: &[Correspondence<f64>], cameras: &Cameras) -> Result<Vec<Correspondence<f64>>, String> {
-    let both = seen.iter().zip(1..).map(|(s, number)| {
-        let first = cameras.first.undistort(&s.first);
-        let second = cameras.second.undistort(&s.second);
-        let (first, second) =
-            first.and_then(|p| Ok((p, second?))).map_err(|e| format!("match {number}: {e}"))?;
-        Ok(Correspondence { first, second })
-    });
-    both.collect()
+/// The match as cameras without lenses would show it; `None` where a lens's coefficients describe no sight.
+fn undistorted(seen: &Correspondence<f64>, cameras: &Cameras) -> Option<Correspondence<f64>> {
+    let first = cameras.first.undistort(&seen.first).ok()?;
+    let second = cameras.second.undistort(&seen.second).ok()?;
+    Some(Correspondence { first, second })
 }

@@ -1,6 +1,7 @@
 //! What a step of a path costs.
 
 use super::lanes::{TOP, before, lesser, splat};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::penalties::Penalties;
 use core::cell::Cell;
 
@@ -81,6 +82,7 @@ pub(super) fn close(cells: &[Cell<u32>], place: usize, far: u32) -> u32 {
     let mut least = u32::MAX;
     let closed = before(place, cells.len());
     for (word, cell) in cells.iter().enumerate() {
+        keep_loop();
         let lanes = closed(word);
         cell.set(cell.get() & !lanes | splat(far) & lanes);
         least = lesser(least, cell.get());

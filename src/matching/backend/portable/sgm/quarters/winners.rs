@@ -5,6 +5,7 @@ use super::columns::words;
 use super::lanes::before;
 use super::rounds;
 use super::steps::most;
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
@@ -66,6 +67,7 @@ pub(super) fn left<const WORDS: usize, const ALL: bool, Put: FnMut(usize, Found)
 #[inline(always)]
 fn close_sums(path: &[u32], sums: &mut [u32], open: &mut [u32], lanes: impl Fn(usize) -> u32) {
     for (word, ((open, path), sum)) in open.iter_mut().zip(path).zip(sums).enumerate() {
+        keep_loop();
         let lanes = lanes(word);
         (*open, *sum) = (path | lanes, *sum | lanes);
     }

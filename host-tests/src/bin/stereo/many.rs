@@ -100,7 +100,20 @@ pub fn run(
         lines.push(Line::of(&out, frame, input.name())?);
     }
     write_table(&args.out, TABLE, &lines, None, watch.as_ref())?;
+    note_earlier_runs(&args.out, lines.len());
     tell(args, &lines, watch.as_ref())
+}
+
+/// Says which finished folders stand behind those of a run of so many pairs.
+fn note_earlier_runs(out: &Path, pairs: usize) {
+    let is_finished = |next: &usize| out.join(format!("{:06}", next + 1)).join(FINISHED).is_file();
+    let (first, last) = (pairs + 1, pairs + (pairs..).take_while(is_finished).count());
+    let which = match last.checked_sub(first) {
+        None => return,
+        Some(0) => format!("{last:06} is"),
+        Some(_) => format!("{first:06} to {last:06} are"),
+    };
+    remark(&format!("note: {}: {which} of an earlier run, not in {TABLE}", out.display()));
 }
 
 /// Writes the table of a run, a picture where there is one, and what a watch saw.

@@ -28,13 +28,14 @@ pub(in crate::matching::backend) fn below_tops<const BITS: u32>(tops: u32) -> u3
     if is_fast { by_product::<BITS>(tops) } else { by_shift::<BITS>(tops) }
 }
 
+/// [`below_tops`] in two instructions.
 #[inline(always)]
 fn by_shift<const BITS: u32>(tops: u32) -> u32 {
     tops - (tops >> BITS)
 }
 
-/// The same in one instruction where one gives the upper half of a product, RV32's `mulhu`: a number times
-/// 1 - 1 / 2^`BITS`.
+/// [`below_tops`] in one instruction, where one gives the upper half of a product (RV32's `mulhu`): a number
+/// times 1 - 1 / 2^`BITS`.
 #[inline(always)]
 fn by_product<const BITS: u32>(tops: u32) -> u32 {
     let factor = 0u32.wrapping_sub(1 << (32 - BITS));

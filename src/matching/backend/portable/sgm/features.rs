@@ -37,58 +37,58 @@ pub(in crate::matching::backend) struct Looks<'a> {
     pub brightness: &'a [u8],
 }
 
-/// The features of a row, in the workspace.
-// In vectors they are compiled with the kernel's instructions; in words once for all numbers of disparities.
-#[cfg_attr(stereopsis_simd, inline(always))]
-#[cfg_attr(not(stereopsis_simd), inline(never))]
-pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
-    work: &PathWork<'_>,
-    lines: [&Rows5<'a>; 2],
-    workspace: &'a mut [u8],
-) -> Option<Features<'a>> {
-    let width = work.width;
-    let (most, shift) = (work.penalties.gradient, work.gradient_shift);
-    let [left, right] = lines.map(|lines| lines.map(|line| part(line, ..width)));
-    let (of_left, of_right) = workspace.split_at_mut_checked(3 * width)?;
-    looks_of::<R>(&left, most, shift, rows(of_left, width));
-    let of_left = &*of_left;
-    let mut of_each = chunks(of_left, width);
-    let [along, across, census] = core::array::from_fn(|_| of_each.next().unwrap_or_default());
-    let of_left = Looks { rows: of_left, along, across, census, brightness: left[2] };
+// In vectors compiled with the kernel's instructions; in words once for all numbers of disparities.
+once_without_vectors! {
+    /// The features of a row, in the workspace.
+    pub(in crate::matching::backend) fn of<'a, R: FeatureRows, S: SgmParameters>(
+        work: &PathWork<'_>,
+        lines: [&Rows5<'a>; 2],
+        workspace: &'a mut [u8],
+    ) -> Option<Features<'a>> {
+        let width = work.width;
+        let (most, shift) = (work.penalties.gradient, work.gradient_shift);
+        let [left, right] = lines.map(|lines| lines.map(|line| part(line, ..width)));
+        let (of_left, of_right) = workspace.split_at_mut_checked(3 * width)?;
+        looks_of::<R>(&left, most, shift, rows(of_left, width));
+        let of_left = &*of_left;
+        let mut of_each = chunks(of_left, width);
+        let [along, across, census] = core::array::from_fn(|_| of_each.next().unwrap_or_default());
+        let of_left = Looks { rows: of_left, along, across, census, brightness: left[2] };
 
-    // One more than is compared, for the numbers halfway to the last.
-    let count = width + work.stride;
-    // Some kernels read three numbers beyond the last row, for which there is room.
-    let of_right = of_right.get_mut(..6 * count + 3)?;
-    let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
-    let outside = count.min(work.stride - 1 + work.min_disparity);
-    let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));
-    looks_of::<R>(&right, most, shift, inside);
-    R::halve(right[2], part_mut(brightness, outside..));
-    // The first column and the next one: the row may begin behind them.
-    let pair = |row: &[u8]| part(row, outside..).first_chunk().copied().unwrap_or([0; 2]);
-    let [first_along, first_across, first_census] = if width > 1 && outside + 2 <= count {
-        [pair(along), pair(across), pair(census)]
-    } else {
-        first_columns::<R>(&right, most, shift)
-    };
-    let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
-    for (row, [first, _]) in [
-        (&mut *along, first_along),
-        (&mut *across, first_across),
-        (&mut *census, first_census),
-        (&mut *brightness, first_brightness),
-    ] {
-        go_on::<R>(row, first, outside, outside + width);
+        // One more than is compared, for the numbers halfway to the last.
+        let count = width + work.stride;
+        // Some kernels read three numbers beyond the last row, for which there is room.
+        let of_right = of_right.get_mut(..6 * count + 3)?;
+        let [along, across, census, brightness, least, greatest]: [_; 6] = rows(of_right, count);
+        let outside = count.min(work.stride - 1 + work.min_disparity);
+        let inside = [&mut *along, &mut *across, &mut *census].map(|row| part_mut(row, outside..));
+        looks_of::<R>(&right, most, shift, inside);
+        R::halve(right[2], part_mut(brightness, outside..));
+        // The first column and the next one: the row may begin behind them.
+        let pair = |row: &[u8]| part(row, outside..).first_chunk().copied().unwrap_or([0; 2]);
+        let [first_along, first_across, first_census] = if width > 1 && outside + 2 <= count {
+            [pair(along), pair(across), pair(census)]
+        } else {
+            first_columns::<R>(&right, most, shift)
+        };
+        let first_brightness = [0, 1].map(|x| right[2].get(x).map_or(0, |pixel| pixel >> 1));
+        for (row, [first, _]) in [
+            (&mut *along, first_along),
+            (&mut *across, first_across),
+            (&mut *census, first_census),
+            (&mut *brightness, first_brightness),
+        ] {
+            go_on::<R>(row, first, outside, outside + width);
+        }
+        if S::BETWEEN_PIXELS {
+            R::range(along, least, greatest);
+            let [first, next] = first_along;
+            let range = R::between(first, first, if width > 1 { next } else { first });
+            R::fill(part_mut(least, ..outside), range.0);
+            R::fill(part_mut(greatest, ..outside), range.1);
+        }
+        Some(Features { left: of_left, right: of_right, count })
     }
-    if S::BETWEEN_PIXELS {
-        R::range(along, least, greatest);
-        let [first, next] = first_along;
-        let range = R::between(first, first, if width > 1 { next } else { first });
-        R::fill(part_mut(least, ..outside), range.0);
-        R::fill(part_mut(greatest, ..outside), range.1);
-    }
-    Some(Features { left: of_left, right: of_right, count })
 }
 
 /// Rows of so many bytes; what there is no room for is empty.

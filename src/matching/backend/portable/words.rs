@@ -39,7 +39,7 @@ fn by_shift<const BITS: u32>(tops: u32) -> u32 {
 #[inline(always)]
 fn by_product<const BITS: u32>(tops: u32) -> u32 {
     let factor = 0u32.wrapping_sub(1 << (32 - BITS));
-    (u64::from(tops) * u64::from(factor) >> 32) as u32
+    ((u64::from(tops) * u64::from(factor)) >> 32) as u32
 }
 
 /// Whether something holds for the bytes of each lane.

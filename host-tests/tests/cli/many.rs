@@ -107,12 +107,17 @@ fn what_is_finished_is_not_done_again_unless_its_images_or_settings_differ() {
     assert_eq!(run(&["--filter", "strict"]), [true; 3]);
     assert_eq!(run(&["--filter", "strict"]), [false; 3]);
     // Fewer pairs than before.
-    let [left, right] = ["frames/left/f?.png", "frames/right/f?.png"].map(|name| at(&bench, name));
-    let two = ["--left", &left, "--right", &right, "--out", &out];
-    let told = text(&matched(&two).stderr);
-    assert!(told.contains("000003 is of an earlier run, not in frames.csv"), "{told}");
-    let table = fs::read_to_string(bench.path("out/frames.csv")).expect("a table");
-    assert!(table.lines().count() == 3 && bench.path("out/000003/disparity.pfm").is_file(), "{table}");
+    for (name, count, which) in [
+        ("f?.png", 2, "000003 is of an earlier run"),
+        ("f1*.png", 1, "000002 to 000003 are of an earlier run"),
+    ] {
+        let [left, right] = ["left", "right"].map(|side| at(&bench, &format!("frames/{side}/{name}")));
+        let told = text(&matched(&["--left", &left, "--right", &right, "--out", &out]).stderr);
+        assert!(told.contains(&format!("{which}, not in frames.csv")), "{told}");
+        let table = fs::read_to_string(bench.path("out/frames.csv")).expect("a table");
+        assert_eq!(table.lines().count(), 1 + count, "{table}");
+        assert!(bench.path("out/000003/disparity.pfm").is_file());
+    }
 }
 
 #[test]

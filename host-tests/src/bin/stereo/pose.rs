@@ -79,13 +79,13 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     let seen = read_matches(&args.matches)?;
     let cameras = Cameras::open(&args.calib)?;
     let in_sight: Vec<_> = seen.iter().map(|s| undistorted(s, &cameras)).collect();
-    let left: Vec<_> = in_sight.iter().flatten().copied().collect();
-    let blind = seen.len() - left.len();
+    let sighted: Vec<_> = in_sight.iter().flatten().copied().collect();
+    let blind = seen.len() - sighted.len();
     let named = |why| Failure::new(format!("{}: {why}", args.matches.display()));
-    if left.is_empty() && blind > 0 {
+    if sighted.is_empty() && blind > 0 {
         return Err(named(format!("the lenses' coefficients describe no sight for any of {blind} matches")));
     }
-    let (answer, rms) = solve(&left, &cameras, &args.robust).map_err(named)?;
+    let (answer, rms) = solve(&sighted, &cameras, &args.robust).map_err(named)?;
     let mut answer = answer.among(&in_sight);
     // A zero's sign says nothing.
     answer.translation.iter_mut().for_each(|x| *x += 0.0);

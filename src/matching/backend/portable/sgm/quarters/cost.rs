@@ -5,7 +5,7 @@
 
 use super::columns::words;
 use super::lanes::splat;
-use super::others::{Costs, NUMBERS, Others, gather};
+use super::others::{Costs, LANES, NUMBERS, Others, go_on};
 use super::rounds;
 use super::steps::margin;
 use crate::matching::backend::loops::keep_loop;
@@ -33,23 +33,25 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
     let columns = view_mut::<u8, u32>(work.costs);
     let width = left.brightness.len();
     let mut others = [Others::default(); GROUPS];
-    gather::<S>(right, count, 0, words, &mut others);
     // The next pixel, and where its others begin.
     let (mut x, mut first) = (0, 0);
     while x < width {
-        if x > 0 {
-            // The last are the first ones of this pixel. One place is left out: whole fours are made.
-            let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells().as_chunks::<NUMBERS>().0;
-            for (to, from) in part(all, 1..words).iter().zip(part(all, first..)) {
+        let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells().as_chunks::<NUMBERS>().0;
+        let before = part(all, ..words);
+        if x == 0 {
+            (0..LANES).for_each(|lane| go_on::<S>((right, count), lane * words, before, before));
+        } else {
+            // The last are the first ones of this pixel, but for the first of them.
+            for (to, from) in before.iter().zip(part(all, GROUPS.saturating_sub(words)..)) {
                 keep_loop();
                 to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
             }
-            gather::<S>(right, count, x + words - 1, words, part_mut(&mut others, words..));
             first = 1;
         }
+        go_on::<S>((right, count), x - first + LANES * words, all, part(all, words..));
         let pixels = (GROUPS + 1 - first).saturating_sub(words).max(1).min(width - x);
         let columns = part_mut(columns, x * words..(x + pixels) * words);
         rounds::enter::<S>(&costs, x, part(&others, first..), columns);
-        (x, first) = (x + pixels, first + pixels);
+        x += pixels;
     }
 }

@@ -1,11 +1,11 @@
 //! What costs are made of: right pixels, in the order of the candidates in a column, and left ones.
 
 use super::columns::FOUR;
-use super::lanes::{ONE, TOP};
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Looks;
 use crate::matching::memory::slices::part;
+use core::cell::Cell;
 
 /// What four right pixels look like that are the candidates of a word: the least gradient along the line
 /// between the pixel and its neighbours, or the pixel's own where nothing is compared between pixels, marked;
@@ -25,36 +25,34 @@ pub(super) struct Costs<'a> {
     pub margin: u32,
 }
 
-/// What is turned of each.
-const TURNED: Others = [TOP, !TOP, 0, 0, 0];
-/// What is added to each then.
-const ADDED: Others = [0, ONE, 0, 0, 0];
+/// Pixels of a group.
+pub(super) const LANES: usize = size_of::<u32>();
 
-/// Makes groups of right pixels, a whole number of fours of them, the first of which stands in that
-/// column, and the others of a group so many `words` further to the right each. `right` are rows of
-/// `count` features, and three numbers more. Groups behind the last column are left as they are, or of no
-/// meaning.
+/// What is turned of each number's byte, and what is added to it then.
+const MADE_OF: [(u8, u8); NUMBERS] = [(0, 0x80), (0xff, 0x81), (0, 0), (0, 0), (0, 0)];
+
+/// Makes groups of right pixels of those that are a column's words further to the left: their last lanes are
+/// the pixels from `column` on, and the others what stands one lane further in the groups `from`. There are
+/// whole fours of them. `right` are rows of `count` features, and three numbers more. Groups behind the last
+/// column are left as they are, or of no meaning.
 #[inline(always)]
-pub(super) fn gather<S: SgmParameters>(
-    right: &[u8],
-    count: usize,
-    first: usize,
-    words: usize,
-    groups: &mut [Others],
+pub(super) fn go_on<S: SgmParameters>(
+    (right, count): (&[u8], usize),
+    column: usize,
+    from: &[[Cell<u32>; NUMBERS]],
+    to: &[[Cell<u32>; NUMBERS]],
 ) {
     // The rows of what stands in a group, in its order.
     let rows = if S::BETWEEN_PIXELS { [4, 5, 1, 2, 3] } else { [0, 0, 1, 2, 3] };
-    let groups = groups.as_chunks_mut::<FOUR>().0;
-    for (kind, (row, (turned, added))) in rows.into_iter().zip(TURNED.into_iter().zip(ADDED)).enumerate() {
-        let from = row * count + first;
-        let lane = |lane: usize| part(right, (from + lane * words).min(right.len())..).as_chunks::<FOUR>().0;
-        let lanes = lane(0).iter().zip(lane(1)).zip(lane(2).iter().zip(lane(3)));
-        for (groups, ((a, b), (c, d))) in groups.iter_mut().zip(lanes) {
+    let fours = from.as_chunks::<FOUR>().0.iter().zip(to.as_chunks::<FOUR>().0);
+    for (kind, (row, (turned, added))) in rows.into_iter().zip(MADE_OF).enumerate() {
+        let pixels = part(right, (row * count + column).min(right.len())..).as_chunks::<FOUR>().0;
+        for ((from, to), pixels) in fours.clone().zip(pixels) {
             keep_loop();
-            let pixels = a.iter().zip(b).zip(c.iter().zip(d));
-            for (group, ((&a, &b), (&c, &d))) in groups.iter_mut().zip(pixels) {
-                if let Some(four) = group.get_mut(kind) {
-                    *four = (u32::from_le_bytes([a, b, c, d]) ^ turned).wrapping_add(added);
+            for ((from, to), pixel) in from.iter().zip(to).zip(pixels) {
+                if let (Some(from), Some(to)) = (from.get(kind), to.get(kind)) {
+                    let last = (pixel ^ turned).wrapping_add(added);
+                    to.set(from.get() >> 8 | u32::from(last) << 24);
                 }
             }
         }

@@ -3,6 +3,7 @@
 
 use super::half_words::HalfWords;
 use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
+use super::x86::partners::Places;
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -155,6 +156,22 @@ impl<const BY_AVX512: bool> Group for Bytes32<BY_AVX512> {
 pub(super) fn least_key(keys: __m128i) -> (u8, usize) {
     let key = safely!(_mm_cvtsi128_si32(_mm_minpos_epu16(keys)));
     ((key >> 8) as u8, 255 - usize::from(key as u8))
+}
+
+impl Places for Wide {
+    #[inline(always)]
+    fn at(self, places: Self) -> Self {
+        // A lookup is among 16 lanes, and zero where a place has its top bit set.
+        let in_half = |half: __m256i, places: Self| {
+            let place = places.plus_saturating(Self::splat(0x70));
+            safely!(Self(_mm256_shuffle_epi8(half, place.0)))
+        };
+        let halves = safely!([
+            _mm256_permute2x128_si256(self.0, self.0, 0x00),
+            _mm256_permute2x128_si256(self.0, self.0, 0x11),
+        ]);
+        in_half(halves[0], places).or(in_half(halves[1], places.minus(Self::splat(16))))
+    }
 }
 
 impl<const BY_AVX512: bool> HalfWords for Bytes32<BY_AVX512> {

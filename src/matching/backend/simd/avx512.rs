@@ -4,6 +4,7 @@
 use super::avx2::{LANES_AFTER, lanes_after, lanes_before, least_key};
 use super::half_words::HalfWords;
 use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
+use super::x86::partners::{Places, offer_each};
 use crate::matching::backend::portable::group::Group;
 use crate::matching::memory::slices::part;
 use core::arch::x86_64::*;
@@ -160,35 +161,6 @@ impl HalfWords for Widest {
 }
 
 impl Widest {
-    /// The first bytes of a row, and zeros where it has less.
-    #[inline(always)]
-    fn of_first(row: &[u8]) -> Self {
-        let Some(cell) = row.first_chunk() else {
-            let lanes = (1 << row.len()) - 1;
-            // SAFETY: as above. Of what is in memory only the bytes of the row are read, fewer than lanes.
-            return unsafe { Self(_mm512_maskz_loadu_epi8(lanes, row.as_ptr().cast())) };
-        };
-        Self::of(*cell)
-    }
-
-    /// Writes the first bytes of a row, as many as it has.
-    #[inline(always)]
-    fn put_first(self, row: &mut [u8]) {
-        match row.first_chunk_mut() {
-            Some(cell) => *cell = self.cell(),
-            None => row.iter_mut().zip(self.cell()).for_each(|(to, from)| *to = from),
-        }
-    }
-
-    /// The numbers of the lanes that `places` are, and zero where there is no such lane.
-    #[inline(always)]
-    fn at(self, places: Self) -> Self {
-        safely!({
-            let is_inside = _mm512_cmplt_epu8_mask(places.0, Self::splat(BYTES as u8).0);
-            Self(_mm512_maskz_permutexvar_epi8(is_inside, places.0, self.0))
-        })
-    }
-
     /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
     fn last_lane_of(cells: &[Self], number: Self) -> usize {
@@ -203,27 +175,42 @@ impl Widest {
     }
 }
 
-/// The numbers of all lanes.
-const LANES: &[u8; BYTES] = &{
-    let mut lanes = [0; BYTES];
-    let mut lane = 0;
-    while lane < BYTES {
-        lanes[lane] = lane as u8;
-        lane += 1;
+impl Places for Widest {
+    #[inline(always)]
+    fn of_first(row: &[u8]) -> Self {
+        let Some(cell) = row.first_chunk() else {
+            let lanes = (1 << row.len()) - 1;
+            // SAFETY: as above. Of what is in memory only the bytes of the row are read, fewer than lanes.
+            return unsafe { Self(_mm512_maskz_loadu_epi8(lanes, row.as_ptr().cast())) };
+        };
+        Self::of(*cell)
     }
-    lanes
-};
 
-/// Of how many candidates [`offer`] takes less than one winner after the other.
-pub(super) const FEW: usize = 32;
-/// Of how many candidates lanes modulo 256 are told apart by [`kept`].
-pub(super) const MOST: usize = 192;
+    #[inline(always)]
+    fn at(self, places: Self) -> Self {
+        safely!({
+            let is_inside = _mm512_cmplt_epu8_mask(places.0, Self::splat(BYTES as u8).0);
+            Self(_mm512_maskz_permutexvar_epi8(is_inside, places.0, self.0))
+        })
+    }
 
-/// [`offer`](crate::matching::backend::portable::left_right_rows::offer) of winners among few candidates, to
-/// 64 right columns at a time, of which the disparities alone are kept: four instructions for 64 evaluations,
-/// whatever the picture.
+    #[inline(always)]
+    fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: &mut [u16], kept: &mut [u8]) {
+        if candidates <= FEW {
+            offer_few(costs, disparities, candidates, kept);
+        } else {
+            offer_each(costs, disparities, right, kept);
+        }
+    }
+}
+
+/// Of how many candidates [`offer_few`] takes less than one winner after the other.
+const FEW: usize = 32;
+
+/// Offers of winners among few candidates, to 64 right columns at a time, of which the disparities alone are
+/// kept: four instructions for 64 evaluations, whatever the picture.
 #[inline(always)]
-pub(super) fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: &mut [u8]) {
+fn offer_few(costs: &[u8], disparities: &[u8], candidates: usize, right: &mut [u8]) {
     for (first, right) in (0..).step_by(BYTES).zip(right.chunks_mut(BYTES)) {
         let mut kept = Kept::of_nobody(candidates);
         let [costs, disparities] = [part(costs, first..), part(disparities, first..)];
@@ -243,21 +230,6 @@ pub(super) fn offer(costs: &[u8], disparities: &[u8], candidates: usize, right: 
             kept.offer([Widest::of_first(costs), Widest::of_first(disparities)]);
         }
         kept.disparities.put_first(right);
-    }
-}
-
-/// What the partners of 64 winners at a time keep, by the disparities that right columns keep.
-#[inline(always)]
-pub(super) fn kept(disparities: &[u8], candidates: usize, right: &[u8], kept: &mut [u8]) {
-    for (x, (kept, disparities)) in kept.chunks_mut(BYTES).zip(disparities.chunks(BYTES)).enumerate() {
-        // Lanes after the first of these that a pixel's partner is, modulo 256.
-        let partners = Widest::of(*LANES).minus(Widest::of_first(disparities));
-        let mut found = Widest::splat(0);
-        for behind in 0..=candidates.div_ceil(BYTES).min(x) {
-            let right = Widest::of_first(part(right, (x - behind) * BYTES..));
-            found = found.or(right.at(partners.plus(Widest::splat((BYTES * behind) as u8))));
-        }
-        found.put_first(kept);
     }
 }
 

@@ -115,8 +115,9 @@ impl Backend {
         room: [&mut [u8]; 2],
     ) {
         match self {
+            Self::Avx2(avx2) => avx2.keep(winners, pixels, candidates, right, room),
             Self::Avx512(avx512) => avx512.keep(winners, pixels, candidates, right, room),
-            _ => {
+            Self::Planes | Self::Lanes => {
                 let [kept, _] = room;
                 left_right_rows::keep(winners, pixels, right, kept);
             }

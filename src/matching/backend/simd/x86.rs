@@ -1,12 +1,13 @@
 //! Windows in the registers of AVX2 and AVX-512, unrolled for the usual numbers of disparities.
 #![allow(unsafe_code)]
 
+pub(super) mod partners;
+
 pub(super) use super::avx2::{Wide, WideByAvx512};
 pub(super) use super::avx512::Widest;
-use super::{avx512 as widest, windows};
+use super::windows;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::portable::group::Group;
-use crate::matching::backend::portable::left_right_rows;
 use crate::matching::backend::work::WindowWork;
 use crate::matching::memory::winners::{Select, WinnerRows};
 use core::arch::x86_64::__cpuid;
@@ -50,6 +51,22 @@ impl Avx2 {
         // SAFETY: `self` is the proof that the processor has the one feature that the function is compiled
         // for.
         unsafe { run(work) }
+    }
+
+    /// What partners keep of the winners' offers: [`partners::keep`], among any number of candidates.
+    #[inline]
+    pub(super) fn keep(
+        self,
+        winners: &WinnerRows<'_>,
+        pixels: Option<[&[u8]; 2]>,
+        candidates: usize,
+        right: &mut [u16],
+        room: [&mut [u8]; 2],
+    ) {
+        self.run(
+            #[inline(always)]
+            || partners::keep::<Wide>(winners, pixels, candidates, right, room),
+        );
     }
 
     /// A row whose columns are whole registers: of 32 lanes.
@@ -105,7 +122,7 @@ impl Avx512 {
         unsafe { run_512(work) }
     }
 
-    /// [`left_right_rows::keep`]. `of_right` is room for a byte a winner.
+    /// What partners keep of the winners' offers: [`partners::keep`], among any number of candidates.
     #[inline]
     pub(super) fn keep(
         self,
@@ -113,33 +130,11 @@ impl Avx512 {
         pixels: Option<[&[u8]; 2]>,
         candidates: usize,
         right: &mut [u16],
-        [kept, of_right]: [&mut [u8]; 2],
+        room: [&mut [u8]; 2],
     ) {
-        if candidates > widest::MOST {
-            return left_right_rows::keep(winners, pixels, right, kept);
-        }
-        let disparities = &*winners.disparities;
         self.run(
             #[inline(always)]
-            || {
-                let costs = match pixels {
-                    Some([left, partners]) => {
-                        widest::kept(disparities, candidates, partners, kept);
-                        left_right_rows::compare(winners.costs, left, kept);
-                        &*kept
-                    }
-                    None => &*winners.costs,
-                };
-                if candidates <= widest::FEW {
-                    widest::offer(costs, disparities, candidates, of_right);
-                } else {
-                    left_right_rows::offer(costs, disparities, right);
-                    for (to, from) in of_right.iter_mut().zip(right) {
-                        *to = *from as u8;
-                    }
-                }
-                widest::kept(disparities, candidates, of_right, kept);
-            },
+            || partners::keep::<Widest>(winners, pixels, candidates, right, room),
         );
     }
 

@@ -1,5 +1,5 @@
-//! The left-right check's offers, and what the partners of a register of winners keep, looked up among as many
-//! right columns at a time.
+//! The left-right check's offers, and what the partners of a register of winners keep, looked up among as
+//! many right columns at a time.
 
 use crate::matching::backend::portable::group::Group;
 use crate::matching::backend::portable::left_right_rows;

@@ -318,7 +318,7 @@ mod tests {
             (state >> 8) as usize % below
         };
         for width in [1, 2, 31, 63, 64, 65, 100, 127, 128, 129, 300] {
-            for candidates in [16, 31, 32, 33, 64, 65, 128, 192, 193, 256] {
+            for candidates in [16, 31, 32, 33, 64, 65, 128, 192, 193, 224, 225, 256] {
                 // Few costs, so that many are equal, those that nobody beats among them.
                 let costs: Vec<u8> = (0..width).map(|_| [0, 7, 8, 255][chance(4)]).collect();
                 let disparities: Vec<u8> = (0..width).map(|x| chance(candidates.min(x + 1)) as u8).collect();

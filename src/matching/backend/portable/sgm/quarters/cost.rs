@@ -5,7 +5,7 @@
 
 use super::columns::words;
 use super::lanes::splat;
-use super::others::{Costs, LANES, NUMBERS, Others, go_on};
+use super::others::{Costs, LANES, NUMBERS, Others, shift_in};
 use super::rounds;
 use super::steps::margin;
 use crate::matching::backend::loops::keep_loop;
@@ -39,16 +39,16 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
         let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells().as_chunks::<NUMBERS>().0;
         let before = part(all, ..words);
         if x == 0 {
-            (0..LANES).for_each(|lane| go_on::<S>((right, count), lane * words, before, before));
+            (0..LANES).for_each(|lane| shift_in::<S>((right, count), lane * words, before, before));
         } else {
-            // The last are the first ones of this pixel, but for the first of them.
+            // The last groups stay: the first of them stands one column before this pixel.
             for (to, from) in before.iter().zip(part(all, GROUPS.saturating_sub(words)..)) {
                 keep_loop();
                 to.iter().zip(from).for_each(|(to, from)| to.set(from.get()));
             }
             first = 1;
         }
-        go_on::<S>((right, count), x - first + LANES * words, all, part(all, words..));
+        shift_in::<S>((right, count), x - first + LANES * words, all, part(all, words..));
         let pixels = (GROUPS + 1 - first).saturating_sub(words).max(1).min(width - x);
         let columns = part_mut(columns, x * words..(x + pixels) * words);
         rounds::enter::<S>(&costs, x, part(&others, first..), columns);

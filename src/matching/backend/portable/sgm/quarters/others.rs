@@ -28,15 +28,16 @@ pub(super) struct Costs<'a> {
 /// Pixels of a group.
 pub(super) const LANES: usize = size_of::<u32>();
 
-/// What is turned of each number's byte, and what is added to it then.
+/// What is turned of each number's byte, and what is added to it then: the first is marked, the second is
+/// taken from 128.
 const MADE_OF: [(u8, u8); NUMBERS] = [(0, 0x80), (0xff, 0x81), (0, 0), (0, 0), (0, 0)];
 
-/// Makes groups of right pixels of those that are a column's words further to the left: their last lanes are
-/// the pixels from `column` on, and the others what stands one lane further in the groups `from`. There are
-/// whole fours of them. `right` are rows of `count` features, and three numbers more. Groups behind the last
+/// Makes the groups `to` of the groups `from`, whole fours of them. Each is a lane further to the right than
+/// the one that it is made of: three of its pixels are that one's last three, and its last pixel is the next
+/// one from `column` on. `right` are rows of `count` features, and three numbers more. Groups behind the last
 /// column are left as they are, or of no meaning.
 #[inline(always)]
-pub(super) fn go_on<S: SgmParameters>(
+pub(super) fn shift_in<S: SgmParameters>(
     (right, count): (&[u8], usize),
     column: usize,
     from: &[[Cell<u32>; NUMBERS]],

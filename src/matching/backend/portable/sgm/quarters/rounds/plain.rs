@@ -170,62 +170,75 @@ fn through<T: Copy>(
 
 /// The even bytes of a word, or of one moved down by a byte the odd ones.
 const HALVES: u32 = 0x00ff_00ff;
-/// How many bits of a half say which word it is of: a sum has nine, and one is to spare.
-const PLACE: u32 = 6;
+/// A one in each half.
+const ONES: u32 = 0x0001_0001;
+/// How many bits of a half say how many words ago a sum was found: it has nine itself, and one is to spare.
+const AGO: u32 = 6;
+/// More than any sum, in each half, and so much less than the most that a half may go through all words.
+pub(super) const NONE: u32 = ONES * (0xffff - (1 << AGO));
 
 /// The winner of a path's column and of the sums of the two others, of so many candidates, which stand last;
 /// all others cost more. Sums are `more` than what they say of costs. Of equal ones the smallest disparity is
 /// taken, which comes last.
 #[inline(always)]
-pub fn winner([path, sums]: [&[u32]; 2], candidates: usize, more: u32) -> Found {
+pub fn winner(columns: [&[u32]; 2], candidates: usize, more: u32) -> Found {
     // The top bit of each half.
     const TOP: u32 = 0x8000_8000;
-    let count = path.len();
-    let (mut even, mut odd) = (u32::MAX, u32::MAX);
-    let mut place = (count as u32).wrapping_mul(0x0001_0001);
-    let lesser = |marked: u32, key: u32| {
-        let difference = marked.wrapping_sub(key);
-        marked - (difference & below_tops::<15>(difference & TOP))
+    let [path, sums] = columns.map(|column| column.as_chunks::<FOUR>().0);
+    let (mut even, mut odd) = (NONE, NONE);
+    // The lesser of the least sum so far, which is one word older, and one of this word.
+    let lesser = |least: u32, sum: u32| {
+        let least = least + ONES;
+        let difference = least.wrapping_sub(sum);
+        least - (difference & below_tops::<15>(difference & TOP))
     };
-    for (path, sums) in path.as_chunks::<FOUR>().0.iter().zip(sums.as_chunks::<FOUR>().0) {
+    for (path, sums) in path.iter().zip(sums) {
         keep_loop();
         for (&path, &sum) in path.iter().zip(sums) {
-            // A sum above the number of its word, counted down.
-            place = place.wrapping_sub(0x0001_0001);
-            even = lesser(even, (((path & HALVES) + (sum & HALVES)) << PLACE) + place);
-            odd = lesser(odd, ((path & !HALVES) >> (8 - PLACE)) + ((sum & !HALVES) >> (8 - PLACE)) + place);
+            even = lesser(even, ((path & HALVES) + (sum & HALVES)) << AGO);
+            odd = lesser(odd, ((path & !HALVES) >> (8 - AGO)) + ((sum & !HALVES) >> (8 - AGO)));
         }
     }
-    // The sums above the disparities.
-    let (mut best, mut behind) = (u32::MAX, 4 * count as u32);
-    for half in [even, odd, even >> 16, odd >> 16] {
-        behind = behind.wrapping_sub(count as u32);
-        best = best.min((half & 0x7fc0) << 10 | ((half & 0x3f) + behind));
+    found([even, odd], columns, candidates, more)
+}
+
+/// The winner, given the least sums of the even and of the odd lanes, each above the number of words behind
+/// it.
+#[inline(always)]
+fn found([even, odd]: [u32; 2], columns: [&[u32]; 2], candidates: usize, more: u32) -> Found {
+    let [path, sums] = columns.map(view::<u32, u8>);
+    let count = columns[0].len();
+    // Of equal sums the last lane's is the one of the smallest disparity.
+    let (mut least, mut behind) = (odd >> 16, 0);
+    for (before, half) in [(1, even >> 16), (2, odd & 0xffff), (3, even & 0xffff)] {
+        if half < least & !((1 << AGO) - 1) {
+            (least, behind) = (half, before);
+        }
     }
-    let disparity = (best & 0xff) as usize;
-    let [path, sums] = [path, sums].map(view::<u32, u8>);
-    let cost = |total: u32| (total.wrapping_sub(more) as i32).min(255) as u8;
-    let at = |disparity: usize| {
-        let place = (4 * count - 1).wrapping_sub(disparity);
-        let count = count.max(1);
-        let byte = 4 * (place % count) + place / count;
-        let [path, sums] = [path, sums].map(|bytes| bytes.get(byte).copied().unwrap_or(0));
+    let ago = (least & ((1 << AGO) - 1)) as usize;
+    let disparity = behind * count + ago;
+    // Where it stands in a column, and how far the next lane's first candidate is from a lane's last.
+    let last = count.wrapping_sub(1);
+    let place = last.wrapping_sub(ago).wrapping_mul(4).wrapping_add(3 - behind);
+    let across = last.wrapping_mul(4).wrapping_sub(1);
+    let above = if ago == last { place.wrapping_add(across) } else { place.wrapping_sub(4) };
+    let below = if ago == 0 { place.wrapping_sub(across) } else { place.wrapping_add(4) };
+    let cost = |sum: u32| (sum.wrapping_sub(more) as i32).min(255) as u8;
+    let here = cost(least >> AGO & 0x1ff);
+    let at = |place: usize| {
+        let [path, sums] = [path, sums].map(|bytes| bytes.get(place).copied().unwrap_or(0));
         cost(u32::from(path) + u32::from(sums))
     };
-    let here = cost(best >> 16);
-    let [mut below, mut above] = [here; 2];
-    let has_above = disparity + 1 < candidates;
-    if has_above {
-        above = at(disparity + 1);
-        below = above;
-    }
-    if disparity > 0 {
-        below = at(disparity - 1);
-        if !has_above {
-            above = below;
+    let (has_below, has_above) = (disparity > 0, disparity + 1 < candidates);
+    let beside = match (has_below, has_above) {
+        (true, true) => (at(below), at(above)),
+        (false, false) => (here, here),
+        (has_below, _) => {
+            let one = at(if has_below { below } else { above });
+            (one, one)
         }
-    }
-    Found { disparity: disparity as u8, cost: here, beside: (below, above) }
+    };
+    Found { disparity: disparity as u8, cost: here, beside }
 }
 
 #[cfg(test)]

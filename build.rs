@@ -12,13 +12,16 @@ const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
-    for name in ["dsp", "vectors", "thumb2", "portable", "simd"] {
+    for name in ["dsp", "vectors", "thumb2", "rv32m", "portable", "simd"] {
         println!("cargo::rustc-check-cfg=cfg(stereopsis_{name})");
     }
     let target = env::var("TARGET").unwrap_or_default();
     let flags = env::var("CARGO_ENCODED_RUSTFLAGS").unwrap_or_default();
     match choose(&target, &flags) {
         Ok(Some(cfg)) => println!("cargo::rustc-cfg={cfg}"),
+        Ok(None) if has_products() && !flags.contains("stereopsis_portable") => {
+            println!("cargo::rustc-cfg=stereopsis_rv32m");
+        }
         Ok(None) => {}
         Err(line) => println!("cargo::error={line}"),
     }
@@ -27,9 +30,19 @@ fn main() {
     }
 }
 
+/// Whether the target's variable `key` is a list that has `value`.
+fn is(key: &str, value: &str) -> bool {
+    env::var(key).is_ok_and(|list| list.split(',').any(|one| one == value))
+}
+
+/// Whether this is an RV32 with all registers that gives the upper half of a product (`mulhu`).
+fn has_products() -> bool {
+    let [has_m, has_few] = ["m", "e"].map(|feature| is("CARGO_CFG_TARGET_FEATURE", feature));
+    is("CARGO_CFG_TARGET_ARCH", "riscv32") && has_m && !has_few
+}
+
 /// Whether the dense path runs in the vectors of `matching/backend/simd`.
 fn has_simd() -> bool {
-    let is = |key: &str, value: &str| env::var(key).is_ok_and(|list| list.split(',').any(|one| one == value));
     is("CARGO_CFG_TARGET_POINTER_WIDTH", "64")
         || is("CARGO_CFG_TARGET_ARCH", "wasm32") && is("CARGO_CFG_TARGET_FEATURE", "simd128")
 }

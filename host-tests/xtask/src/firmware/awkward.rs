@@ -1,13 +1,13 @@
 //! Lines that fill no vector, and disparities that fill no group of lanes, on the core whose rows are in
 //! assembly: equal to the host's to the bit, as all frames are; and frames of any size with any checks and
-//! penalties, of all methods.
+//! penalties, of all methods, on it and on the one whose paths are in assembly that no other program runs.
 
 use super::frame;
 use super::program::{Optimised, Program};
 use super::results::Ran;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
-use firmware_boards::M55;
+use firmware_boards::{M55, RV32};
 use firmware_scenes::any_frames::AnyFrames;
 use stereopsis_host::run::MethodName;
 
@@ -37,14 +37,20 @@ pub fn check() -> Outcome {
     any_frames()
 }
 
-/// What the board finds in any frames beside what the host finds.
+/// What the boards find in any frames beside what the host finds.
 fn any_frames() -> Outcome {
     let mut host = Vec::new();
     let put = |sum: u32| host.extend_from_slice(&sum.to_le_bytes());
     let mut frames = Box::new(AnyFrames::new());
     frames.run(put).map_err(|e| Failure::new(format!("any frames on the host: {e:?}")))?;
-    let ran = Ran::of(M55, "any_frames", Optimised::Speed, &host)?;
-    println!("any_frames: {} frames on {} are equal to the host's", ran.figure("frames")?, ran.taken.core);
+    for board in [M55, RV32] {
+        let ran = Ran::of(board, "any_frames", Optimised::Speed, &host)?;
+        println!(
+            "any_frames: {} frames on {} are equal to the host's",
+            ran.figure("frames")?,
+            ran.taken.core
+        );
+    }
     Ok(())
 }
 

@@ -24,7 +24,7 @@ const ONE: u32 = 0x0101_0101;
 /// and none is set but top bits.
 #[inline(always)]
 pub(in crate::matching::backend) fn below_tops<const BITS: u32>(tops: u32) -> u32 {
-    let is_fast = cfg!(all(target_arch = "riscv32", target_feature = "m", not(stereopsis_portable)));
+    let is_fast = cfg!(stereopsis_rv32m);
     if is_fast { by_product::<BITS>(tops) } else { by_shift::<BITS>(tops) }
 }
 

@@ -22,6 +22,8 @@ type Group = [u8; COLUMNS];
 
 /// What is done to four pixels by whatever instructions a core has.
 pub(in crate::matching::backend) trait FourPixels {
+    /// Whether words of three rows stay in registers from group to group.
+    const KEEPS_ROWS: bool = false;
     /// The codes of the pixels `here`: of the first neighbour the lowest bit, 1 where it is darker.
     fn codes(here: u32, neighbours: [u32; 8]) -> u32;
     /// The sums of half-words and of the even bytes of another word.
@@ -161,6 +163,21 @@ fn from(row: &[u8], column: usize) -> &[Group] {
 /// columns of a row, which are four further with each.
 #[inline(never)]
 fn codes<F: FourPixels>([above, middle, below]: [&[u8]; 3], out: &mut [Group]) {
+    if F::KEEPS_ROWS {
+        let words = |row, column| from(row, column).iter().copied().map(word);
+        let (mut above, mut sides, mut below) = (words(above, 0), words(middle, REACH / 2), words(below, 0));
+        let mut next = || Some([above.next()?, below.next()?]);
+        let (Some([mut a, mut f]), Some([mut b, mut g]), Some(mut d)) = (next(), next(), sides.next()) else {
+            return;
+        };
+        for (out, here) in out.iter_mut().zip(words(middle, REACH)) {
+            keep_loop();
+            let (Some([c, h]), Some(e)) = (next(), sides.next()) else { return };
+            *out = F::codes(here, [a, b, c, d, e, f, g, h]).to_le_bytes();
+            (a, b, d, f, g) = (b, c, e, g, h);
+        }
+        return;
+    }
     let rows = from(above, 0).windows(3).zip(from(below, 0).windows(3));
     let row = from(middle, REACH).iter().zip(from(middle, REACH / 2).windows(2));
     for ((out, (&here, sides)), (above, below)) in out.iter_mut().zip(row).zip(rows) {

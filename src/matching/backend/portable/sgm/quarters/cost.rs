@@ -5,8 +5,8 @@
 
 use super::columns::words;
 use super::lanes::splat;
-use super::others::{Costs, LANES, NUMBERS, Others, shift_in};
-use super::rounds;
+use super::others::{Costs, LANES, NUMBERS, Others};
+use super::paths::{self, shift_in};
 use super::steps::margin;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
@@ -51,7 +51,7 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
         shift_in::<S>((right, count), x - first + LANES * words, all, part(all, words..));
         let pixels = (GROUPS + 1 - first).saturating_sub(words).max(1).min(width - x);
         let columns = part_mut(columns, x * words..(x + pixels) * words);
-        rounds::enter::<S>(&costs, x, part(&others, first..), columns);
+        paths::enter::<S, WORDS, ALL>(&costs, x, part(&others, first..), columns);
         x += pixels;
     }
 }

@@ -7,6 +7,8 @@ use crate::matching::backend::portable::sgm::features_by_four::{FourPixels, SIGN
 pub(in crate::matching::backend) struct WordRows;
 
 impl FourPixels for WordRows {
+    const KEEPS_ROWS: bool = cfg!(stereopsis_rv32m);
+
     #[inline(always)]
     fn codes(here: u32, [a, b, c, d, e, f, g, h]: [u32; 8]) -> u32 {
         let (low, turned) = (here & !TOP, !here);

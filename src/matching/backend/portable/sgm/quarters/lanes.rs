@@ -11,6 +11,13 @@ pub(super) const TOP: u32 = 0x8080_8080;
 /// A one in each lane.
 pub(super) const ONE: u32 = 0x0101_0101;
 
+/// A one in each half-word, where sums are compared.
+pub(super) const ONES: u32 = 0x0001_0001;
+/// How many bits of a half say how many words ago a sum was found: it has nine itself, and one is to spare.
+pub(super) const AGO: u32 = 6;
+/// More than any sum, in each half, and so much less than the most that a half may go through all words.
+pub(super) const NO_SUM: u32 = ONES * (0xffff - (1 << AGO));
+
 /// A byte four times.
 #[inline(always)]
 pub(super) const fn splat(number: u32) -> u32 {

@@ -9,28 +9,34 @@
 //!
 //! * `features`: what is compared; `others`: what it is compared with, in the order of the words; `cost`: the
 //!   costs. `edges`: averaged within edges.
-//! * `steps`: from pixel to pixel; `down` and `along`: the paths; `winners`: the last path and the least
-//!   sums; `columns`: where they stand. `rounds`: what is done to each word.
+//! * `steps`: from pixel to pixel; `in_rounds`: the paths and the least sums; `second`: the second least;
+//!   `columns`: where they stand. `rounds`: what is done to each word. `rv32`: the rows of that core.
 
-mod along;
 mod columns;
 mod cost;
-mod down;
 mod edges;
 mod features;
+#[cfg(not(stereopsis_rv32m))]
+mod in_rounds;
 mod lanes;
 mod others;
 mod rounds;
+#[cfg(stereopsis_rv32m)]
+mod rv32;
+mod second;
 mod steps;
-mod winners;
 
 use super::Passes;
 use super::features::Features;
 use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::work::{EdgeWork, Guide, PathWork};
-use crate::matching::memory::winners::{Found, Unique};
+use crate::matching::memory::winners::{Found, Unique, Winner};
 use features::WordRows;
+#[cfg(not(stereopsis_rv32m))]
+use in_rounds as paths;
+#[cfg(stereopsis_rv32m)]
+use rv32 as paths;
 
 /// The passes over columns of up to `WORDS` words, all of them in use if `ALL`: then the compiler knows how
 /// many. Costs are made with room for so many groups of right pixels, whole fours and more than a column has.
@@ -61,8 +67,13 @@ impl<const WORDS: usize, const ALL: bool, const GROUPS: usize> Passes for Quarte
         mut unique: Unique<'_>,
         mut put: impl FnMut(usize, Found),
     ) {
-        along::right::<WORDS, ALL>(work, guide);
-        down::down::<WORDS, ALL>(work, guide);
-        winners::left::<WORDS, ALL, _>(work, guide, &mut unique, &mut put);
+        paths::select::<WORDS, ALL>(work, guide, &mut unique, &mut put);
+    }
+
+    const SELECTS_WORDS: bool = paths::SELECTS_WORDS;
+
+    #[inline(always)]
+    fn select_words(work: &mut PathWork<'_>, guide: Guide<'_>, winners: &mut [Winner]) {
+        paths::select_words::<WORDS, ALL>(work, guide, winners);
     }
 }

@@ -4,7 +4,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
 use crate::matching::backend::portable::sgm::quarters::lanes::{
-    TOP, average, least_of_four, lesser, over, splat, up_to_top,
+    AGO, NO_SUM, ONES, TOP, average, least_of_four, lesser, over, splat, up_to_top,
 };
 use crate::matching::backend::portable::sgm::quarters::others::{Costs, Others};
 use crate::matching::backend::portable::sgm::quarters::steps::{Change, Steps, beside};
@@ -27,7 +27,12 @@ struct Pixel {
 /// Averages the agreements of the pixels from `x` on into their columns; within edges puts them there. A
 /// pixel's `others` begin one after those of the pixel before.
 #[inline(always)]
-pub fn enter<S: SgmParameters>(costs: &Costs<'_>, x: usize, others: &[Others], columns: &mut [u32]) {
+pub fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool>(
+    costs: &Costs<'_>,
+    x: usize,
+    others: &[Others],
+    columns: &mut [u32],
+) {
     let Costs { left, rounds, most, margin } = *costs;
     let [along, across, census, brightness] =
         [left.along, left.across, left.census, left.brightness].map(|row| part(row, x..));
@@ -170,13 +175,6 @@ fn through<T: Copy>(
 
 /// The even bytes of a word, or of one moved down by a byte the odd ones.
 const HALVES: u32 = 0x00ff_00ff;
-/// A one in each half.
-const ONES: u32 = 0x0001_0001;
-/// How many bits of a half say how many words ago a sum was found: it has nine itself, and one is to spare.
-const AGO: u32 = 6;
-/// More than any sum, in each half, and so much less than the most that a half may go through all words.
-pub(super) const NONE: u32 = ONES * (0xffff - (1 << AGO));
-
 /// The winner of a path's column and of the sums of the two others, of so many candidates, which stand last;
 /// all others cost more. Sums are `more` than what they say of costs. Of equal ones the smallest disparity is
 /// taken, which comes last.
@@ -185,7 +183,7 @@ pub fn winner(columns: [&[u32]; 2], candidates: usize, more: u32) -> Found {
     // The top bit of each half.
     const TOP: u32 = 0x8000_8000;
     let [path, sums] = columns.map(|column| column.as_chunks::<FOUR>().0);
-    let (mut even, mut odd) = (NONE, NONE);
+    let (mut even, mut odd) = (NO_SUM, NO_SUM);
     // The lesser of the least sum so far, which is one word older, and one of this word.
     let lesser = |least: u32, sum: u32| {
         let least = least + ONES;

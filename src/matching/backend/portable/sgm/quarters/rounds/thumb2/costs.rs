@@ -22,7 +22,12 @@ struct Row {
 
 /// See `plain`.
 #[inline(always)]
-pub fn enter<S: SgmParameters>(costs: &Costs<'_>, x: usize, others: &[Others], columns: &mut [u32]) {
+pub fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool>(
+    costs: &Costs<'_>,
+    x: usize,
+    others: &[Others],
+    columns: &mut [u32],
+) {
     let Costs { left, rounds, most, margin } = *costs;
     let (words, width) = (FOUR * rounds, left.brightness.len());
     let pixels = columns.len() / words.max(1);

@@ -193,11 +193,11 @@ mod tests {
                 let columns = draw.words::<{ MOST * WIDTH }>(35).map(|word| word | splat(16));
                 let [mut found, mut expected] = [columns; 2];
                 let end = words * (WIDTH - x);
-                enter::<Sgm>(&costs, x, &others[..words + WIDTH], &mut found[..end]);
-                plain::enter::<Sgm>(&costs, x, &others[..words + WIDTH], &mut expected[..end]);
+                enter::<Sgm, 0, false>(&costs, x, &others[..words + WIDTH], &mut found[..end]);
+                plain::enter::<Sgm, 0, false>(&costs, x, &others[..words + WIDTH], &mut expected[..end]);
                 assert!(found == expected && found[..end] != columns[..end], "{words} {x}");
-                enter::<SgmEdge>(&costs, x, &others[..words + WIDTH], &mut found[..end]);
-                plain::enter::<SgmEdge>(&costs, x, &others[..words + WIDTH], &mut expected[..end]);
+                enter::<SgmEdge, 0, false>(&costs, x, &others[..words + WIDTH], &mut found[..end]);
+                plain::enter::<SgmEdge, 0, false>(&costs, x, &others[..words + WIDTH], &mut expected[..end]);
                 assert!(found == expected, "{words} {x}, within edges");
             }
         }

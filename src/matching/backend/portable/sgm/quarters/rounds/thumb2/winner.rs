@@ -1,8 +1,8 @@
 //! The winner of a pixel's sums.
 #![allow(unsafe_code)]
 
-use super::super::plain::NONE;
 use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
+use crate::matching::backend::portable::sgm::quarters::lanes::NO_SUM;
 use crate::matching::memory::winners::Found;
 use core::arch::asm;
 
@@ -150,7 +150,7 @@ unsafe fn least_sum(path: *const u32, sums: *const u32, count: u32, candidates: 
             "pop {{r6, r7}}",
             inout("r0") path => found, inout("r1") sums => _, inout("r2") count => _,
             inout("r4") candidates => _, inout("r5") more => _, out("r3") _, out("r8") _, out("r9") _,
-            inout("r10") NONE => _, inout("r11") NONE => _, out("r12") _,
+            inout("r10") NO_SUM => _, inout("r11") NO_SUM => _, out("r12") _,
             inout("lr") 0x00ff_00ff => _,
         );
     }

@@ -1,25 +1,25 @@
 //! The path from the right, and the winners of the paths' sums.
 
 use super::along::Along;
-use super::columns::words;
-use super::lanes::before;
-use super::rounds;
-use super::steps::most;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::sgm::quarters::columns::words;
+use crate::matching::backend::portable::sgm::quarters::lanes::before;
+use crate::matching::backend::portable::sgm::quarters::rounds;
+use crate::matching::backend::portable::sgm::quarters::second::{close_sums, second};
+use crate::matching::backend::portable::sgm::quarters::steps::most;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
-use crate::matching::memory::winners::{BESIDE, Found, Unique};
+use crate::matching::memory::winners::{Found, Unique};
 use core::cell::Cell;
 
 /// Takes the path from the right along the row, and selects the winner of every pixel that has a candidate,
 /// by the sum of its three paths.
 #[inline(always)]
-pub(super) fn left<const WORDS: usize, const ALL: bool, Put: FnMut(usize, Found)>(
+pub(super) fn left<const WORDS: usize, const ALL: bool>(
     work: &mut PathWork<'_>,
     guide: Guide<'_>,
     unique: &mut Unique<'_>,
-    put: &mut Put,
+    put: &mut impl FnMut(usize, Found),
 ) {
     let PathWork { width, disparities, min_disparity, .. } = *work;
     let count = words::<WORDS, ALL>(work);
@@ -60,35 +60,6 @@ pub(super) fn left<const WORDS: usize, const ALL: bool, Put: FnMut(usize, Found)
             },
         );
     }
-}
-
-/// Makes the sums more than any other in these lanes of each word: 255 in the `open` ones of a path and in
-/// those of the other two.
-#[inline(always)]
-fn close_sums(path: &[u32], sums: &mut [u32], open: &mut [u32], lanes: impl Fn(usize) -> u32) {
-    for (word, ((open, path), sum)) in open.iter_mut().zip(path).zip(sums).enumerate() {
-        keep_loop();
-        let lanes = lanes(word);
-        (*open, *sum) = (path | lanes, *sum | lanes);
-    }
-}
-
-/// The least cost of the candidates that are neither before the first one nor beside a winner.
-#[inline(never)]
-fn second(
-    path: &[u32],
-    sums: &mut [u32],
-    open: &mut [u32],
-    (closed, winner): (usize, usize),
-    more: u32,
-) -> u8 {
-    // It is rarely asked for: its loops are not unrolled, whatever is known of the column where it is.
-    let sums = core::hint::black_box(sums);
-    let count = sums.len();
-    let [closed, below, around] =
-        [closed, winner.saturating_sub(BESIDE), winner + BESIDE + 1].map(|place| before(place, count));
-    close_sums(path, sums, open, |word| closed(word) | around(word) & !below(word));
-    rounds::winner([open, sums], 1, more).cost
 }
 
 /// The columns of a volume, the last first.

@@ -1,9 +1,9 @@
 //! The paths along the row.
 
-use super::columns::words;
-use super::lanes::least_of_four;
-use super::rounds;
-use super::steps::{Steps, close};
+use crate::matching::backend::portable::sgm::quarters::columns::words;
+use crate::matching::backend::portable::sgm::quarters::lanes::least_of_four;
+use crate::matching::backend::portable::sgm::quarters::rounds;
+use crate::matching::backend::portable::sgm::quarters::steps::{Steps, close};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{chunks, part, part_mut};
 use crate::matching::memory::views::{view, view_mut};

@@ -1,8 +1,8 @@
 //! The path from above.
 
-use super::columns::{column, words};
-use super::rounds;
-use super::steps::{Steps, close};
+use crate::matching::backend::portable::sgm::quarters::columns::{column, words};
+use crate::matching::backend::portable::sgm::quarters::rounds;
+use crate::matching::backend::portable::sgm::quarters::steps::{Steps, close};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
 use crate::matching::memory::views::{view, view_mut};

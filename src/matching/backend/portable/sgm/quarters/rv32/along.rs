@@ -1,0 +1,151 @@
+//! The paths along the row.
+
+use super::super::columns::words;
+use super::{BELOW, CHANGES, JUMPS, Row};
+use crate::matching::backend::portable::sgm::quarters::lanes::least_of_four;
+use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
+use crate::matching::backend::portable::sgm::quarters::steps::close;
+use crate::matching::backend::work::{Guide, PathWork};
+use crate::matching::memory::views::{view, view_mut};
+use core::arch::asm;
+use core::cell::Cell;
+
+/// The pixels that a path goes through, from left to right, and where it is.
+pub(super) struct Pixels {
+    pub here: *const u8,
+    /// Where the kinds of the changes go, times eight.
+    pub kinds: *mut u8,
+    pub costs: *const u32,
+    /// The column before.
+    pub from: *const u32,
+    /// The first pixel's column, behind which are those of the others.
+    pub to: *mut u32,
+    /// The brightness before.
+    pub before: u8,
+    /// The least of the column before.
+    pub least: u32,
+}
+
+/// What the word is that was before, less its costs; and the least so far.
+macro_rules! put {
+    ($path:literal, $offset:literal) => {
+        concat!(
+            at!("lw", "t", $offset, "costs"),
+            op!("sub", $path, $path, "t"),
+            at!("sw", $path, $offset, "to"),
+            lesser!("marked", $path),
+        )
+    };
+}
+
+/// The loop over pixels, whose columns have `four` words in a round or `eight` in all.
+macro_rules! along {
+    ($(#[$doc:meta])* $name:ident, $words:ident) => {
+        $(#[$doc])*
+        #[inline(never)]
+        pub(super) unsafe fn $name(row: &Row, pixels: Pixels, count: usize) -> u32 {
+            let Pixels { here, kinds, costs, from, to, before, least } = pixels;
+            let [edge, edge_of_much] = row.steps.edges;
+            let mut marked = least;
+            // SAFETY: as the caller says.
+            unsafe {
+                asm!(
+                    "1:",
+                    "lbu {u}, 0({here})",
+                    "addi {here}, {here}, 1",
+                    "sub {t}, {u}, {before}",
+                    "mv {before}, {u}",
+                    "srai {u}, {t}, 31",
+                    "xor {t}, {t}, {u}",
+                    "sub {t}, {t}, {u}",
+                    kind!("edge", "edge_of_much"),
+                    "sb {t}, 0({kinds})",
+                    "addi {kinds}, {kinds}, 1",
+                    "sub {t}, {row}, {t}",
+                    "lw {step}, {changes}({t})",
+                    "lw {bound}, {jumps}({t})",
+                    "add {bound}, {bound}, {marked}",
+                    "mul {bound}, {bound}, {ones}",
+                    "lw {b}, 0({from})",
+                    "add {end}, {from}, {size}",
+                    beside!("far"),
+                    "li {marked}, -1",
+                    column!($words, "from", put, "costs", "to"),
+                    least_of_four!("marked"),
+                    "sub {from}, {to}, {size}",
+                    "addi {count}, {count}, -1",
+                    "bnez {count}, 1b",
+                    here = inout(reg) here => _, before = inout(reg) u32::from(before) => _,
+                    kinds = inout(reg) kinds => _, count = inout(reg) count => _,
+                    from = inout(reg) from => _, costs = inout(reg) costs => _, to = inout(reg) to => _,
+                    row = in(reg) row, size = in(reg) row.size, far = in(reg) row.steps.far,
+                    edge = in(reg) edge, edge_of_much = in(reg) edge_of_much, marked = inout(reg) marked,
+                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _, t = out(reg) _, u = out(reg) _,
+                    step = out(reg) _, bound = out(reg) _, behind = out(reg) _, end = out(reg) _,
+                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW, changes = const CHANGES, jumps = const JUMPS,
+                    options(nostack),
+                );
+            }
+            marked
+        }
+    };
+}
+
+along! {
+    /// Takes a path through so many pixels; returns the least of the last one's column. 108 instructions, and 41
+    /// for a pixel.
+    ///
+    /// # Safety
+    /// There are so many pixels, one at least, and of each a column of the row's size of costs, read, and one
+    /// written; the one before is read, and may be the first one's.
+    along_fours, fours
+}
+along! {
+    /// [`along_fours`] of columns of eight words. 208 instructions in all, and 37 for a pixel.
+    ///
+    /// # Safety
+    /// As of that; a column has eight words.
+    along_eight, eight
+}
+
+/// Takes the path from the left along the row. The kind of the change on its way into each pixel, times
+/// eight, is put in the workspace.
+#[inline(never)]
+pub(in super::super) fn right<const WORDS: usize, const ALL: bool>(
+    row: &Row,
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+) {
+    let count = words::<WORDS, ALL>(work);
+    let (width, beyond) = (work.width, (4 * count).saturating_sub(work.disparities));
+    let costs = view::<u8, u32>(work.costs);
+    let columns = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
+    let kinds = view_mut::<u32, u8>(work.workspace);
+    let lengths = [costs.len() / count.max(1), columns.len() / count.max(1), kinds.len(), guide.here.len()];
+    if width == 0 || count > WORDS || lengths.into_iter().any(|length| length < width) {
+        return;
+    }
+    let none = [0u32; WORDS];
+    let (mut x, mut least, mut before) = (0, 0, 0);
+    while x < width {
+        let pixels = Pixels {
+            here: guide.here.as_ptr().wrapping_add(x),
+            kinds: kinds.as_mut_ptr().wrapping_add(x),
+            costs: costs.as_ptr().wrapping_add(x * count),
+            from: if x == 0 { none.as_ptr() } else { columns.as_ptr().wrapping_add((x - 1) * count).cast() },
+            to: columns.as_ptr().wrapping_add(x * count).cast_mut().cast(),
+            before,
+            least,
+        };
+        // Where candidates stand beyond the search, one at a time: their costs are no path's.
+        let next = if beyond > 0 { 1 } else { width };
+        // SAFETY: there are as many pixels, kinds and columns, and cells may be written.
+        least = unsafe { (if ALL && WORDS == 8 { along_eight } else { along_fours })(row, pixels, next) };
+        if beyond > 0 {
+            let column = columns.get(x * count..(x + 1) * count).unwrap_or_default();
+            least = least_of_four(close(column, beyond, row.steps.far));
+        }
+        before = guide.here.get(x).copied().unwrap_or(0);
+        x += next;
+    }
+}

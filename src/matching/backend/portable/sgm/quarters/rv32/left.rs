@@ -1,0 +1,144 @@
+//! The path from the right and the winners: all pixels, and where more is asked for one by one.
+
+use super::along::{Pixels, along_eight, along_fours};
+use super::select::{Selected, select_eight, select_fours};
+use super::{Row, winner};
+use crate::matching::backend::portable::sgm::quarters::columns::words;
+use crate::matching::backend::portable::sgm::quarters::lanes::{before, least_of_four};
+use crate::matching::backend::portable::sgm::quarters::second::{close_sums, second};
+use crate::matching::backend::portable::sgm::quarters::steps::close;
+use crate::matching::backend::work::{Guide, PathWork};
+use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::views::{view, view_mut};
+use crate::matching::memory::winners::{Found, Unique, Winner};
+use core::cell::Cell;
+
+/// Takes the path from the right along the row, and selects the winner of every pixel that has a candidate,
+/// by the sum of its three paths. What [`right`](super::right) has put in the workspace stands there.
+pub(in super::super) fn left<const WORDS: usize, const ALL: bool>(
+    row: &Row,
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    unique: &mut Unique<'_>,
+    put: &mut impl FnMut(usize, Found),
+) {
+    let mut room = [[0; WORDS]; 2];
+    let end = work.width;
+    one_by_one(
+        row,
+        work,
+        guide,
+        (end, 0),
+        room.each_mut().map(|room| &mut room[..]),
+        unique,
+        put,
+        if ALL && WORDS == 8 { along_eight } else { along_fours },
+    );
+}
+
+/// [`left`] into words, where nothing is asked of the second best.
+pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
+    row: &Row,
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    winners: &mut [Winner],
+) {
+    let count = words::<WORDS, ALL>(work);
+    let (width, begin) = (work.width, work.min_disparity);
+    let mut room = [[0; WORDS]; 2];
+    let [costs, sums] = [&*work.costs, &*work.sums].map(view::<u8, u32>);
+    let is_there = costs.len().min(sums.len()) >= width * count
+        && 4 * work.workspace.len() >= width
+        && winners.len() >= width
+        && count <= WORDS;
+    if work.disparities == 4 * count && begin < width && is_there {
+        let last = width - 1;
+        let pixels = Selected {
+            kinds: view::<u32, u8>(work.workspace).as_ptr().wrapping_add(last),
+            costs: costs.as_ptr().wrapping_add(last * count),
+            sums: sums.as_ptr().wrapping_add(last * count),
+            winners: winners.as_mut_ptr().wrapping_add(last),
+            path: room.as_flattened_mut().as_mut_ptr(),
+        };
+        // SAFETY: there are as many pixels from the first one on that has a candidate, and their columns.
+        unsafe { (if ALL && WORDS == 8 { select_eight } else { select_fours })(row, pixels, width - begin) };
+        return;
+    }
+    let put = &mut |x: usize, found: Found| {
+        if let Some(winner) = winners.get_mut(x) {
+            *winner = Winner::new(found.cost, found.disparity, found.beside);
+        }
+    };
+    let unique = &mut Unique::new(None, &mut [], &mut []);
+    one_by_one(
+        row,
+        work,
+        guide,
+        (width, 0),
+        room.each_mut().map(|room| &mut room[..]),
+        unique,
+        put,
+        if ALL && WORDS == 8 { along_eight } else { along_fours },
+    );
+}
+
+/// The pixels before `end`, to which the path has come with its column in the first `room` and its least.
+#[inline(never)]
+fn one_by_one(
+    row: &Row,
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    (end, mut least): (usize, u32),
+    [paths, open]: [&mut [u32]; 2],
+    unique: &mut Unique<'_>,
+    put: &mut dyn FnMut(usize, Found),
+    along: unsafe fn(&Row, Pixels, usize) -> u32,
+) {
+    let PathWork { disparities, min_disparity, .. } = *work;
+    let count = words::<0, false>(work);
+    let beyond = (4 * count).saturating_sub(disparities);
+    let [paths, open] = [paths, open].map(|room| part_mut(room, ..count));
+    let costs = view::<u8, u32>(work.costs);
+    let sums = view_mut::<u8, u32>(work.sums);
+    let kinds = &*view_mut::<u32, u8>(work.workspace);
+    for x in (min_disparity..end).rev() {
+        let places = x * count..(x + 1) * count;
+        let (costs, sums) = (part(costs, places.clone()), part_mut(sums, places));
+        let (Some(&here), Some(&kind)) = (guide.here.get(x), kinds.get(x)) else { return };
+        if costs.len() != count || sums.len() != count || paths.len() != count {
+            return;
+        }
+        let mut after = 0u8;
+        let pixels = Pixels {
+            here: &here,
+            kinds: &mut after,
+            costs: costs.as_ptr(),
+            from: paths.as_ptr(),
+            to: paths.as_mut_ptr(),
+            before: guide.here.get(x + 1).copied().unwrap_or(0),
+            least,
+        };
+        // SAFETY: a pixel, and its columns.
+        least = unsafe { along(row, pixels, 1) };
+        if beyond > 0 {
+            let cells = Cell::from_mut(&mut *paths).as_slice_of_cells();
+            least = least_of_four(close(cells, beyond, row.steps.far));
+        }
+        let jump = |kind: u8| row.steps.changes[2usize.saturating_sub(usize::from(kind / 8))].jump;
+        let more = row.more.wrapping_sub(jump(kind)).wrapping_sub(jump(after));
+        // The first pixels have fewer candidates than there are lanes.
+        let candidates = disparities.min(x + 1 - min_disparity);
+        let closed = 4 * count - candidates;
+        let mut columns = [&*paths, &*sums];
+        if closed > 0 {
+            close_sums(paths, sums, open, before(closed, count));
+            columns = [&*open, &*sums];
+        }
+        let found = winner(columns, candidates, more);
+        put(x, found);
+        unique.check(x, found.cost, || {
+            let winner = 4 * count - 1 - usize::from(found.disparity);
+            second(paths, sums, open, (closed, winner), more)
+        });
+    }
+}

@@ -1,0 +1,256 @@
+//! A row's paths and winners in the instructions of RV32IM, whole rows at a time: `rounds::plain` says what is
+//! done to each word. The compiler makes the same of words, but puts away for them what is between their
+//! loops. What is said of instructions is for four words.
+//!
+//! The mask of a comparison is the upper half of a product: see `below_tops`.
+#![allow(unsafe_code)]
+
+/// One instruction, of registers by their names.
+macro_rules! op {
+    ($name:literal, $to:literal, $one:literal, $other:literal) => {
+        concat!($name, " {", $to, "}, {", $one, "}, {", $other, "}\n")
+    };
+}
+
+/// A shift, or an addition of a number.
+macro_rules! by {
+    ($name:literal, $to:literal, $one:literal, $number:literal) => {
+        concat!($name, " {", $to, "}, {", $one, "}, ", $number, "\n")
+    };
+}
+
+/// What stands at so many bytes from where a register points to.
+macro_rules! at {
+    ($name:literal, $word:literal, $offset:literal, $place:literal) => {
+        concat!($name, " {", $word, "}, ", $offset, "({", $place, "})\n")
+    };
+}
+
+/// Makes `t` what the first of two numbers, a marked one, is over the second. 4 instructions.
+macro_rules! over {
+    ($marked:literal, $other:literal) => {
+        concat!(
+            op!("sub", "t", $marked, $other),
+            op!("and", "u", "t", "top"),
+            op!("mulhu", "u", "u", "below"),
+            op!("and", "t", "t", "u"),
+        )
+    };
+}
+
+/// Makes the marked number the lesser of it and another one. 5 instructions.
+macro_rules! lesser {
+    ($marked:literal, $other:literal) => {
+        concat!(over!($marked, $other), op!("sub", $marked, $marked, "t"))
+    };
+}
+
+/// Makes the word before what it costs to come to the word here. 17 instructions.
+macro_rules! come {
+    ($before:literal, $here:literal, $next:literal) => {
+        concat!(
+            op!("or", $before, $before, "top"),
+            lesser!($before, $next),
+            op!("add", $before, $before, "step"),
+            over!($before, $here),
+            op!("sub", $before, $before, "bound"),
+            op!("sub", $before, $before, "t"),
+            op!("and", "t", $before, "top"),
+            op!("mulhu", "t", "t", "below"),
+            "not {t}, {t}\n",
+            op!("and", $before, $before, "t"),
+        )
+    };
+}
+
+/// Makes the least of four marked numbers a number. 11 instructions, or 12.
+macro_rules! least_of_four {
+    ($marked:literal) => {
+        concat!(
+            by!("srli", "t", $marked, "16"),
+            op!("sub", "t", $marked, "t"),
+            op!("add", "t", "t", "top"),
+            op!("and", "u", "t", "top"),
+            op!("mulhu", "u", "u", "below"),
+            op!("and", "t", "t", "u"),
+            op!("sub", $marked, $marked, "t"),
+            by!("srli", "t", $marked, "8"),
+            by!("andi", $marked, $marked, "127"),
+            by!("andi", "t", "t", "127"),
+            concat!("bgeu {t}, {", $marked, "}, 9f\n"),
+            concat!("mv {", $marked, "}, {t}\n"),
+            "9:\n",
+        )
+    };
+}
+
+/// The kind of a change of brightness, `t`, times eight: of the [`Steps`]' costs of changes so many bytes
+/// before the third. 4 instructions.
+macro_rules! kind {
+    ($edge:literal, $edge_of_much:literal) => {
+        concat!(
+            op!("sltu", "u", "t", $edge),
+            op!("sltu", "t", "t", $edge_of_much),
+            op!("add", "t", "t", "u"),
+            by!("slli", "t", "t", "3"),
+        )
+    };
+}
+
+/// What stands before a column whose first word is `b` and whose end is at `end`, in `a`, and behind it.
+macro_rules! beside {
+    ($far:literal) => {
+        concat!(
+            at!("lw", "a", "-4", "end"),
+            by!("slli", "a", "a", "8"),
+            op!("or", "a", "a", $far),
+            by!("slli", "behind", $far, "24"),
+            by!("srli", "t", "b", "8"),
+            op!("or", "behind", "behind", "t"),
+        )
+    };
+}
+
+/// All words of a column from `$from` on, which are in turn `a` to `d`, of which `a` is before the first one,
+/// `b`, and `$put` their places; what else is there a word of each for is gone through likewise.
+macro_rules! column {
+    (fours, $from:literal, $put:ident $(, $other:literal)*) => {
+        concat!(
+            "j 3f\n2:\n",
+            concat!(at!("lw", "b", "0", $from), come!("d", "a", "b"), $put!("d", "-4")),
+            "3:\n",
+            concat!(at!("lw", "c", "4", $from), come!("a", "b", "c"), $put!("a", "0")),
+            concat!(at!("lw", "d", "8", $from), come!("b", "c", "d"), $put!("b", "4")),
+            concat!(at!("lw", "a", "12", $from), come!("c", "d", "a"), $put!("c", "8")),
+            by!("addi", $from, $from, "16"),
+            $(by!("addi", $other, $other, "16"),)*
+            concat!("bne {", $from, "}, {end}, 2b\n"),
+            concat!("mv {b}, {behind}\n", come!("d", "a", "b"), $put!("d", "-4")),
+        )
+    };
+    (eight, $from:literal, $put:ident $(, $other:literal)*) => {
+        concat!(
+            concat!(at!("lw", "c", "4", $from), come!("a", "b", "c"), $put!("a", "0")),
+            concat!(at!("lw", "d", "8", $from), come!("b", "c", "d"), $put!("b", "4")),
+            concat!(at!("lw", "a", "12", $from), come!("c", "d", "a"), $put!("c", "8")),
+            concat!(at!("lw", "b", "16", $from), come!("d", "a", "b"), $put!("d", "12")),
+            concat!(at!("lw", "c", "20", $from), come!("a", "b", "c"), $put!("a", "16")),
+            concat!(at!("lw", "d", "24", $from), come!("b", "c", "d"), $put!("b", "20")),
+            concat!(at!("lw", "a", "28", $from), come!("c", "d", "a"), $put!("c", "24")),
+            concat!("mv {b}, {behind}\n", come!("d", "a", "b"), $put!("d", "28")),
+            $(by!("addi", $other, $other, "32"),)*
+        )
+    };
+}
+
+/// What is done to `$word`s by their places, and then to where they stand.
+macro_rules! words {
+    (fours, $word:ident, $place:literal $(, $other:literal)* $(; $more:literal)?) => {
+        concat!(
+            "2:\n",
+            concat!($word!("0"), $word!("4"), $word!("8"), $word!("12")),
+            $(by!("addi", $other, $other, "16"),)*
+            $($more,)?
+            by!("addi", $place, $place, "16"),
+            concat!("bne {", $place, "}, {end}, 2b\n"),
+        )
+    };
+    (eight, $word:ident, $place:literal $(, $other:literal)* $(; $more:literal)?) => {
+        concat!(
+            concat!($word!("0"), $word!("4"), $word!("8"), $word!("12")),
+            concat!($word!("16"), $word!("20"), $word!("24"), $word!("28")),
+            $(by!("addi", $other, $other, "32"),)*
+            by!("addi", $place, $place, "32"),
+        )
+    };
+}
+
+/// What gives the bits below the top one of each lane, as the upper half of a product.
+const BELOW: u32 = 0u32.wrapping_sub(1 << (32 - 7));
+
+mod along;
+mod costs;
+mod down;
+mod left;
+mod others;
+mod select;
+
+pub(super) use costs::enter;
+pub(super) use others::shift_in;
+
+use super::columns::words;
+use super::rounds;
+use super::steps::{Steps, most};
+use crate::matching::backend::work::{Guide, PathWork};
+use crate::matching::memory::winners::{Found, Unique, Winner};
+use core::mem::offset_of;
+
+/// `rounds::plain::winner`, once: it is rarely asked for.
+#[inline(never)]
+pub(super) fn winner(columns: [&[u32]; 2], candidates: usize, more: u32) -> Found {
+    rounds::winner(columns, candidates, more)
+}
+
+/// Whether there is code for [`select_words`].
+pub(super) const SELECTS_WORDS: bool = true;
+
+/// See [`Passes::select`](crate::matching::backend::portable::sgm::Passes::select).
+#[inline(always)]
+pub(super) fn select<const WORDS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    unique: &mut Unique<'_>,
+    put: &mut impl FnMut(usize, Found),
+) {
+    let row = Row::new(work, guide, words::<WORDS, ALL>(work));
+    along::right::<WORDS, ALL>(&row, work, guide);
+    down::down::<WORDS, ALL>(&row, work, guide);
+    left::left::<WORDS, ALL>(&row, work, guide, unique, put);
+}
+
+/// [`select`] into words, where nothing is asked of the second best.
+#[inline(always)]
+pub(super) fn select_words<const WORDS: usize, const ALL: bool>(
+    work: &mut PathWork<'_>,
+    guide: Guide<'_>,
+    winners: &mut [Winner],
+) {
+    let row = Row::new(work, guide, words::<WORDS, ALL>(work));
+    along::right::<WORDS, ALL>(&row, work, guide);
+    down::down::<WORDS, ALL>(&row, work, guide);
+    left::left_words::<WORDS, ALL>(&row, work, guide, winners);
+}
+
+/// What assembly takes of a row.
+#[repr(C)]
+pub(super) struct Row {
+    steps: Steps,
+    /// Bytes of a column.
+    size: usize,
+    /// What is added to a column's place for the next pixel's, beyond a column.
+    skip: isize,
+    /// From a pixel to the next one.
+    pixel: isize,
+    /// What the sums of two paths along the row have more than their costs, and twice what jumps cost.
+    more: u32,
+}
+
+/// Where the costs of the last kind of change stand in a row, that of the largest one.
+const CHANGES: usize = offset_of!(Row, steps) + offset_of!(Steps, changes) + 16;
+/// What a jump costs in it.
+const JUMPS: usize = CHANGES + 4;
+
+impl Row {
+    #[inline(always)]
+    pub(super) fn new(work: &PathWork<'_>, guide: Guide<'_>, count: usize) -> Self {
+        let is_odd = !guide.row.is_multiple_of(2);
+        let size = 4 * count;
+        Self {
+            steps: Steps::new(work.penalties, count),
+            size,
+            skip: if is_odd { -2 * size as isize } else { 0 },
+            pixel: if is_odd { -1 } else { 1 },
+            more: 2 * (128 - u32::from(most(work.penalties))),
+        }
+    }
+}

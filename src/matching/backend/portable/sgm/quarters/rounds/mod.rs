@@ -1,8 +1,8 @@
 //! What is done to each word of a pixel's columns, four words in a round: all the instructions that grow with
 //! the number of disparities.
 //!
-//! A Cortex-M3, whose registers do not suffice for what the compiler makes of a round, has them in assembly. An
-//! RV32 with products has whole rows of pixels (`rv32`), and of these the winner alone, where it is seldom asked.
+//! A Cortex-M3, whose registers do not suffice for what the compiler makes of a round, has them in assembly.
+//! An RV32 with products has whole rows of pixels in assembly (`rv32`), and takes only the winner of these.
 
 #[allow(dead_code, reason = "a Cortex-M3 has all of it itself, an RV32 most")]
 mod plain;

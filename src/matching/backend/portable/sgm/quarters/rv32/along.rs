@@ -92,7 +92,7 @@ macro_rules! along {
 }
 
 along! {
-    /// Takes a path through so many pixels; returns the least of the last one's column. 108 instructions, and 41
+    /// Takes a path through so many pixels; returns the least of the last one's column. 108 instructions, and 44
     /// for a pixel.
     ///
     /// # Safety
@@ -101,7 +101,7 @@ along! {
     along_fours, fours
 }
 along! {
-    /// [`along_fours`] of columns of eight words. 208 instructions in all, and 37 for a pixel.
+    /// [`along_fours`] of columns of eight words. 208 instructions in all, and 44 for a pixel.
     ///
     /// # Safety
     /// As of that; a column has eight words.
@@ -140,7 +140,7 @@ pub(in super::super) fn right<const WORDS: usize, const ALL: bool>(
         // Where candidates stand beyond the search, one at a time: their costs are no path's.
         let next = if beyond > 0 { 1 } else { width };
         // SAFETY: there are as many pixels, kinds and columns, and cells may be written.
-        least = unsafe { (if ALL && WORDS == 8 { along_eight } else { along_fours })(row, pixels, next) };
+        least = unsafe { (row.along)(row, pixels, next) };
         if beyond > 0 {
             let column = columns.get(x * count..(x + 1) * count).unwrap_or_default();
             least = least_of_four(close(column, beyond, row.steps.far));

@@ -1,6 +1,6 @@
 //! The costs of pixels.
 
-use super::BELOW;
+use super::{BELOW, has_eight};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
 use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
@@ -162,21 +162,21 @@ struct Pixels {
 }
 
 agreements! {
-    /// Puts a row's agreements. 199 instructions, and 21 for a pixel.
+    /// Puts a row's agreements. 195 instructions, and 20 for a pixel.
     ///
     /// # Safety
     /// What `row` says is there, and columns of its pixels, which are not 0, of its size.
     put_fours, fours, put
 }
 agreements! {
-    /// Averages a row's agreements into its columns. 215 instructions, and 21 for a pixel.
+    /// Averages a row's agreements into its columns. 215 instructions, and 20 for a pixel.
     ///
     /// # Safety
     /// As of [`put_fours`].
     average_fours, fours, average, low = !TOP
 }
 agreements! {
-    /// [`put_fours`] in columns of eight words. 392 instructions in all, and 21 for a pixel.
+    /// [`put_fours`] in columns of eight words. 384 instructions in all, and 21 for a pixel.
     ///
     /// # Safety
     /// As of that; a column has eight words.
@@ -211,7 +211,7 @@ pub(in super::super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: b
     // SAFETY: so many pixels from `x` on have all they look like; the last one's others are there, as all
     // pixels' columns.
     unsafe {
-        match (S::WITHIN_EDGES, ALL && WORDS == 8) {
+        match (S::WITHIN_EDGES, has_eight::<WORDS, ALL>()) {
             (true, false) => put_fours(&row, most, margin, columns.as_mut_ptr()),
             (true, true) => put_eight(&row, most, margin, columns.as_mut_ptr()),
             (false, false) => average_fours(&row, most, margin, columns.as_mut_ptr()),

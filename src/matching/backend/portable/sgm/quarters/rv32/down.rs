@@ -2,7 +2,7 @@
 
 use super::super::columns::words;
 use super::super::steps::{Steps, close};
-use super::{BELOW, CHANGES, JUMPS, Row};
+use super::{BELOW, CHANGES, JUMPS, Row, has_eight};
 use crate::matching::backend::portable::sgm::quarters::lanes::TOP;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
@@ -116,7 +116,7 @@ macro_rules! go_down {
 }
 
 go_down! {
-    /// Moves the path down to so many pixels and adds it to their sums. 48 and 104 instructions, and 51 for a
+    /// Moves the path down to so many pixels and adds it to their sums. 48 and 104 instructions, and 54 for a
     /// pixel.
     ///
     /// # Safety
@@ -125,14 +125,15 @@ go_down! {
     fours_down, fours
 }
 go_down! {
-    /// [`fours_down`] of columns of eight words. 88 and 200 instructions in all, and 46 for a pixel.
+    /// [`fours_down`] of columns of eight words. 88 and 200 instructions in all, and 56 for a pixel.
     ///
     /// # Safety
     /// As of that; a column has eight words.
     eight_down, eight
 }
 
-/// See `super::super::down`.
+/// Moves the path from above down to the row, and adds it to the sums. Where it stands is said in
+/// `in_rounds::down`.
 #[inline(never)]
 pub(in super::super) fn down<const WORDS: usize, const ALL: bool>(
     row: &Row,
@@ -180,7 +181,7 @@ pub(in super::super) fn down<const WORDS: usize, const ALL: bool>(
         };
         // SAFETY: there are as many pixels and columns in the way that the row is gone through, and cells may
         // be written.
-        unsafe { (if ALL && WORDS == 8 { eight_down } else { fours_down })(row, pixels, next) };
+        unsafe { (if has_eight::<WORDS, ALL>() { eight_down } else { fours_down })(row, pixels, next) };
         if beyond > 0 {
             let kept = tops.get((x + to) * count..(x + to + 1) * count).unwrap_or_default();
             close(kept, beyond, row.steps.far);

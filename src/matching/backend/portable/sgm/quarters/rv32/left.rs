@@ -1,8 +1,8 @@
-//! The path from the right and the winners: all pixels, and where more is asked for one by one.
+//! The path from the right and the winners: all pixels at once, or one by one where more is asked of them.
 
-use super::along::{Pixels, along_eight, along_fours};
+use super::along::Pixels;
 use super::select::{Selected, select_eight, select_fours};
-use super::{Row, winner};
+use super::{Row, has_eight, winner};
 use crate::matching::backend::portable::sgm::quarters::columns::words;
 use crate::matching::backend::portable::sgm::quarters::lanes::{before, least_of_four};
 use crate::matching::backend::portable::sgm::quarters::second::{close_sums, second};
@@ -14,7 +14,7 @@ use crate::matching::memory::winners::{Found, Unique, Winner};
 use core::cell::Cell;
 
 /// Takes the path from the right along the row, and selects the winner of every pixel that has a candidate,
-/// by the sum of its three paths. What [`right`](super::right) has put in the workspace stands there.
+/// by the sum of its three paths. What the path from the left has put in the workspace stands there.
 pub(in super::super) fn left<const WORDS: usize, const ALL: bool>(
     row: &Row,
     work: &mut PathWork<'_>,
@@ -23,17 +23,7 @@ pub(in super::super) fn left<const WORDS: usize, const ALL: bool>(
     put: &mut impl FnMut(usize, Found),
 ) {
     let mut room = [[0; WORDS]; 2];
-    let end = work.width;
-    one_by_one(
-        row,
-        work,
-        guide,
-        (end, 0),
-        room.each_mut().map(|room| &mut room[..]),
-        unique,
-        put,
-        if ALL && WORDS == 8 { along_eight } else { along_fours },
-    );
+    one_by_one(row, (work, guide), room.each_mut().map(|room| &mut room[..]), unique, put);
 }
 
 /// [`left`] into words, where nothing is asked of the second best.
@@ -53,6 +43,7 @@ pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
         && count <= WORDS;
     if work.disparities == 4 * count && begin < width && is_there {
         let last = width - 1;
+        let select = if has_eight::<WORDS, ALL>() { select_eight } else { select_fours };
         let pixels = Selected {
             kinds: view::<u32, u8>(work.workspace).as_ptr().wrapping_add(last),
             costs: costs.as_ptr().wrapping_add(last * count),
@@ -61,7 +52,7 @@ pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
             path: room.as_flattened_mut().as_mut_ptr(),
         };
         // SAFETY: there are as many pixels from the first one on that has a candidate, and their columns.
-        unsafe { (if ALL && WORDS == 8 { select_eight } else { select_fours })(row, pixels, width - begin) };
+        unsafe { select(row, pixels, width - begin) };
         return;
     }
     let put = &mut |x: usize, found: Found| {
@@ -70,44 +61,34 @@ pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
         }
     };
     let unique = &mut Unique::new(None, &mut [], &mut []);
-    one_by_one(
-        row,
-        work,
-        guide,
-        (width, 0),
-        room.each_mut().map(|room| &mut room[..]),
-        unique,
-        put,
-        if ALL && WORDS == 8 { along_eight } else { along_fours },
-    );
+    one_by_one(row, (work, guide), room.each_mut().map(|room| &mut room[..]), unique, put);
 }
 
-/// The pixels before `end`, to which the path has come with its column in the first `room` and its least.
+/// [`left`] with room for the path's column and for what counts of it, both of zeros.
 #[inline(never)]
 fn one_by_one(
     row: &Row,
-    work: &mut PathWork<'_>,
-    guide: Guide<'_>,
-    (end, mut least): (usize, u32),
+    (work, guide): (&mut PathWork<'_>, Guide<'_>),
     [paths, open]: [&mut [u32]; 2],
     unique: &mut Unique<'_>,
     put: &mut dyn FnMut(usize, Found),
-    along: unsafe fn(&Row, Pixels, usize) -> u32,
 ) {
-    let PathWork { disparities, min_disparity, .. } = *work;
+    let PathWork { width, disparities, min_disparity, .. } = *work;
     let count = words::<0, false>(work);
     let beyond = (4 * count).saturating_sub(disparities);
     let [paths, open] = [paths, open].map(|room| part_mut(room, ..count));
     let costs = view::<u8, u32>(work.costs);
     let sums = view_mut::<u8, u32>(work.sums);
     let kinds = &*view_mut::<u32, u8>(work.workspace);
-    for x in (min_disparity..end).rev() {
+    let mut least = 0;
+    for x in (min_disparity..width).rev() {
         let places = x * count..(x + 1) * count;
         let (costs, sums) = (part(costs, places.clone()), part_mut(sums, places));
         let (Some(&here), Some(&kind)) = (guide.here.get(x), kinds.get(x)) else { return };
         if costs.len() != count || sums.len() != count || paths.len() != count {
             return;
         }
+        // The kind of the change from the pixel behind.
         let mut after = 0u8;
         let pixels = Pixels {
             here: &here,
@@ -119,7 +100,7 @@ fn one_by_one(
             least,
         };
         // SAFETY: a pixel, and its columns.
-        least = unsafe { along(row, pixels, 1) };
+        least = unsafe { (row.along)(row, pixels, 1) };
         if beyond > 0 {
             let cells = Cell::from_mut(&mut *paths).as_slice_of_cells();
             least = least_of_four(close(cells, beyond, row.steps.far));

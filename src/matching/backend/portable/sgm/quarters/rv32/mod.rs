@@ -84,8 +84,8 @@ macro_rules! least_of_four {
     };
 }
 
-/// The kind of a change of brightness, `t`, times eight: of the [`Steps`]' costs of changes so many bytes
-/// before the third. 4 instructions.
+/// Makes `t`, a change of brightness, how many bytes before the [`Steps`]' costs of the largest changes its
+/// own stand. 4 instructions.
 macro_rules! kind {
     ($edge:literal, $edge_of_much:literal) => {
         concat!(
@@ -97,7 +97,8 @@ macro_rules! kind {
     };
 }
 
-/// What stands before a column whose first word is `b` and whose end is at `end`, in `a`, and behind it.
+/// Makes `a` what stands before a column whose first word is `b`, and `behind` what stands behind it. 6
+/// instructions.
 macro_rules! beside {
     ($far:literal) => {
         concat!(
@@ -111,8 +112,10 @@ macro_rules! beside {
     };
 }
 
-/// All words of a column from `$from` on, which are in turn `a` to `d`, of which `a` is before the first one,
-/// `b`, and `$put` their places; what else is there a word of each for is gone through likewise.
+/// Goes through the words of a column from `$from` on: `come` makes each what it costs to come there, and `$put`
+/// does the rest, where words stand that many bytes from there and from `$other`s. The word before the column
+/// is in `a`, its first one in `b`. A column has fours of words up to `end`, where it ends there too, or eight
+/// in all.
 macro_rules! column {
     (fours, $from:literal, $put:ident $(, $other:literal)*) => {
         concat!(
@@ -143,7 +146,8 @@ macro_rules! column {
     };
 }
 
-/// What is done to `$word`s by their places, and then to where they stand.
+/// Does to each word of a column what `$word` says of its place, so many bytes from `$place` and `$other`s, which
+/// end at the column's end; and `$more` after four words.
 macro_rules! words {
     (fours, $word:ident, $place:literal $(, $other:literal)* $(; $more:literal)?) => {
         concat!(
@@ -183,6 +187,7 @@ use super::rounds;
 use super::steps::{Steps, most};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::winners::{Found, Unique, Winner};
+use along::Pixels;
 use core::mem::offset_of;
 
 /// `rounds::plain::winner`, once: it is rarely asked for.
@@ -202,7 +207,7 @@ pub(super) fn select<const WORDS: usize, const ALL: bool>(
     unique: &mut Unique<'_>,
     put: &mut impl FnMut(usize, Found),
 ) {
-    let row = Row::new(work, guide, words::<WORDS, ALL>(work));
+    let row = Row::new::<WORDS, ALL>(work, guide);
     along::right::<WORDS, ALL>(&row, work, guide);
     down::down::<WORDS, ALL>(&row, work, guide);
     left::left::<WORDS, ALL>(&row, work, guide, unique, put);
@@ -215,10 +220,15 @@ pub(super) fn select_words<const WORDS: usize, const ALL: bool>(
     guide: Guide<'_>,
     winners: &mut [Winner],
 ) {
-    let row = Row::new(work, guide, words::<WORDS, ALL>(work));
+    let row = Row::new::<WORDS, ALL>(work, guide);
     along::right::<WORDS, ALL>(&row, work, guide);
     down::down::<WORDS, ALL>(&row, work, guide);
     left::left_words::<WORDS, ALL>(&row, work, guide, winners);
+}
+
+/// Whether all columns are known to have eight words.
+const fn has_eight<const WORDS: usize, const ALL: bool>() -> bool {
+    ALL && WORDS == 8
 }
 
 /// What assembly takes of a row.
@@ -227,30 +237,34 @@ pub(super) struct Row {
     steps: Steps,
     /// Bytes of a column.
     size: usize,
-    /// What is added to a column's place for the next pixel's, beyond a column.
+    /// From the end of a column to where the next pixel's begins, on the way down.
     skip: isize,
-    /// From a pixel to the next one.
+    /// From a pixel to the next one there.
     pixel: isize,
     /// What the sums of two paths along the row have more than their costs, and twice what jumps cost.
     more: u32,
+    /// What takes a path along the row through columns of that size.
+    along: unsafe fn(&Row, Pixels, usize) -> u32,
 }
 
-/// Where the costs of the last kind of change stand in a row, that of the largest one.
+/// Where the costs of the largest changes stand in a row: of the others so many bytes before, as `kind` says.
 const CHANGES: usize = offset_of!(Row, steps) + offset_of!(Steps, changes) + 16;
 /// What a jump costs in it.
 const JUMPS: usize = CHANGES + 4;
 
 impl Row {
+    /// Of columns of up to `WORDS` words, all of them in use if `ALL`.
     #[inline(always)]
-    pub(super) fn new(work: &PathWork<'_>, guide: Guide<'_>, count: usize) -> Self {
-        let is_odd = !guide.row.is_multiple_of(2);
-        let size = 4 * count;
+    fn new<const WORDS: usize, const ALL: bool>(work: &PathWork<'_>, guide: Guide<'_>) -> Self {
+        let count = words::<WORDS, ALL>(work);
+        let (size, is_odd) = (4 * count, !guide.row.is_multiple_of(2));
         Self {
             steps: Steps::new(work.penalties, count),
             size,
             skip: if is_odd { -2 * size as isize } else { 0 },
             pixel: if is_odd { -1 } else { 1 },
             more: 2 * (128 - u32::from(most(work.penalties))),
+            along: if has_eight::<WORDS, ALL>() { along::along_eight } else { along::along_fours },
         }
     }
 }

@@ -68,6 +68,12 @@ fn choose(target: &str, flags: &str) -> Result<Option<&'static str>, String> {
              that has them build with -C target-cpu=cortex-m33, which chooses them by itself"
         ));
     }
+    if asked("stereopsis_dsp") && asked("stereopsis_vectors") {
+        return Err(
+            "stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone"
+                .into(),
+        );
+    }
     let has_thumb2 = is_v8 || target.starts_with("thumbv7");
     if asked("stereopsis_thumb2") && !has_thumb2 {
         return Err(format!("stereopsis_thumb2: {target} has no Thumb-2 instructions: leave it out"));

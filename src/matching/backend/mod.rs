@@ -29,12 +29,6 @@ mod simd;
 
 #[cfg(target_endian = "big")]
 compile_error!("stereopsis is for little-endian processors: words of memory stand for rows of bytes");
-#[cfg(all(stereopsis_dsp, stereopsis_vectors))]
-compile_error!(
-    "stereopsis_dsp and stereopsis_vectors exclude each other: a Cortex-M55 takes the second alone"
-);
-#[cfg(all(any(stereopsis_dsp, stereopsis_vectors), not(target_arch = "arm")))]
-compile_error!("stereopsis_dsp and stereopsis_vectors are for Arm's 32-bit cores");
 
 #[cfg(stereopsis_dsp)]
 use armv7em as target;

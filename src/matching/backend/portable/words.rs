@@ -15,6 +15,9 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::BESIDE;
 
+/// Whether this is an RV32 that gives the upper half of a product (`mulhu`), which has code of its own.
+pub(in crate::matching::backend) const HAS_PRODUCTS: bool = cfg!(stereopsis_rv32m);
+
 /// The top bit of each lane.
 const TOP: u32 = 0x8080_8080;
 /// A one in each lane.
@@ -24,8 +27,7 @@ const ONE: u32 = 0x0101_0101;
 /// and none is set but top bits.
 #[inline(always)]
 pub(in crate::matching::backend) fn below_tops<const BITS: u32>(tops: u32) -> u32 {
-    let is_fast = cfg!(stereopsis_rv32m);
-    if is_fast { by_product::<BITS>(tops) } else { by_shift::<BITS>(tops) }
+    if HAS_PRODUCTS { by_product::<BITS>(tops) } else { by_shift::<BITS>(tops) }
 }
 
 /// [`below_tops`] in two instructions.

@@ -2,12 +2,13 @@
 
 use super::lanes::{TOP, average, over};
 use crate::matching::backend::portable::sgm::features_by_four::{FourPixels, SIGNS};
+use crate::matching::backend::portable::words::HAS_PRODUCTS;
 
 /// Four bytes or two half-words in a word.
 pub(in crate::matching::backend) struct WordRows;
 
 impl FourPixels for WordRows {
-    const KEEPS_ROWS: bool = cfg!(stereopsis_rv32m);
+    const KEEPS_ROWS: bool = HAS_PRODUCTS;
 
     #[inline(always)]
     fn codes(here: u32, [a, b, c, d, e, f, g, h]: [u32; 8]) -> u32 {

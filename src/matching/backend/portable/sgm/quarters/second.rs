@@ -1,7 +1,6 @@
 //! Sums that count no more, and the second best.
 
 use super::lanes::before;
-use super::paths;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::winners::BESIDE;
 
@@ -16,14 +15,15 @@ pub(super) fn close_sums(path: &[u32], sums: &mut [u32], open: &mut [u32], lanes
     }
 }
 
-/// The least cost of the candidates that are neither before the first one nor beside a winner.
+/// The least cost of the candidates that are neither before the first one nor beside a winner, which `least`
+/// finds.
 #[inline(never)]
 pub(super) fn second(
     path: &[u32],
     sums: &mut [u32],
     open: &mut [u32],
     (closed, winner): (usize, usize),
-    more: u32,
+    least: impl FnOnce([&[u32]; 2]) -> u8,
 ) -> u8 {
     // It is rarely asked for: its loops are not unrolled, whatever is known of the column where it is.
     let sums = core::hint::black_box(sums);
@@ -31,5 +31,5 @@ pub(super) fn second(
     let [closed, below, around] =
         [closed, winner.saturating_sub(BESIDE), winner + BESIDE + 1].map(|place| before(place, count));
     close_sums(path, sums, open, |word| closed(word) | around(word) & !below(word));
-    paths::winner([open, sums], 1, more).cost
+    least([open, sums])
 }

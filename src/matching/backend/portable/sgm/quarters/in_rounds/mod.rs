@@ -5,7 +5,7 @@ mod down;
 mod winners;
 
 pub(super) use super::others::shift_in;
-pub(super) use super::rounds::{enter, winner};
+pub(super) use super::rounds::enter;
 
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::winners::{Found, Unique, Winner};

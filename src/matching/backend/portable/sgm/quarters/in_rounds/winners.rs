@@ -56,7 +56,8 @@ pub(super) fn left<const WORDS: usize, const ALL: bool>(
             #[inline(always)]
             || {
                 let winner = 4 * count - 1 - usize::from(found.disparity);
-                second(paths, sums, open, (closed, winner), more)
+                let least = |columns: [&[u32]; 2]| rounds::winner(columns, 1, more).cost;
+                second(paths, sums, open, (closed, winner), least)
             },
         );
     }

@@ -1,7 +1,7 @@
 //! The paths along the row.
 
 use super::super::columns::words;
-use super::{BELOW, CHANGES, JUMPS, Row};
+use super::row::{BELOW, CHANGES, JUMPS, Pixels, Row};
 use crate::matching::backend::portable::sgm::quarters::lanes::least_of_four;
 use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
 use crate::matching::backend::portable::sgm::quarters::steps::close;
@@ -10,24 +10,8 @@ use crate::matching::memory::views::{view, view_mut};
 use core::arch::asm;
 use core::cell::Cell;
 
-/// The pixels that a path goes through, from left to right, and where it is.
-pub(super) struct Pixels {
-    pub here: *const u8,
-    /// Where the kinds of the changes go, times eight.
-    pub kinds: *mut u8,
-    pub costs: *const u32,
-    /// The column before.
-    pub from: *const u32,
-    /// The first pixel's column, behind which are those of the others.
-    pub to: *mut u32,
-    /// The brightness before.
-    pub before: u8,
-    /// The least of the column before.
-    pub least: u32,
-}
-
 /// What the word is that was before, less its costs; and the least so far.
-macro_rules! put {
+macro_rules! put_path {
     ($path:literal, $offset:literal) => {
         concat!(
             at!("lw", "t", $offset, "costs"),
@@ -70,7 +54,7 @@ macro_rules! along {
                     "add {end}, {from}, {size}",
                     beside!("far"),
                     "li {marked}, -1",
-                    column!($words, "from", put, "costs", "to"),
+                    column!($words, "from", put_path, "costs", "to"),
                     least_of_four!("marked"),
                     "sub {from}, {to}, {size}",
                     "addi {count}, {count}, -1",
@@ -80,9 +64,11 @@ macro_rules! along {
                     from = inout(reg) from => _, costs = inout(reg) costs => _, to = inout(reg) to => _,
                     row = in(reg) row, size = in(reg) row.size, far = in(reg) row.steps.far,
                     edge = in(reg) edge, edge_of_much = in(reg) edge_of_much, marked = inout(reg) marked,
-                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _, t = out(reg) _, u = out(reg) _,
+                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _,
+                    t = out(reg) _, u = out(reg) _,
                     step = out(reg) _, bound = out(reg) _, behind = out(reg) _, end = out(reg) _,
-                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW, changes = const CHANGES, jumps = const JUMPS,
+                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW,
+                    changes = const CHANGES, jumps = const JUMPS,
                     options(nostack),
                 );
             }
@@ -92,8 +78,8 @@ macro_rules! along {
 }
 
 along! {
-    /// Takes a path through so many pixels; returns the least of the last one's column. 108 instructions, and 44
-    /// for a pixel.
+    /// Takes a path through so many pixels; returns the least of the last one's column. 108 instructions, and
+    /// 44 for a pixel.
     ///
     /// # Safety
     /// There are so many pixels, one at least, and of each a column of the row's size of costs, read, and one

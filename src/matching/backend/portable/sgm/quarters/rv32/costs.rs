@@ -1,6 +1,6 @@
 //! The costs of pixels.
 
-use super::{BELOW, has_eight};
+use super::row::{BELOW, has_eight};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::quarters::columns::FOUR;
 use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
@@ -16,7 +16,7 @@ macro_rules! number {
 
 /// The agreement of a pixel with the four whose word stands at so many bytes from `columns`, with the margin,
 /// in `v`. 48 instructions.
-macro_rules! agreement {
+macro_rules! agreement_of {
     ($place:literal) => {
         concat!(
             number!("v", $place, "0"),
@@ -80,7 +80,7 @@ macro_rules! cut {
 
 /// The loops over pixels and the words of their columns, which `$put` an agreement that is in `v` in its
 /// place, so many bytes from `columns`.
-macro_rules! agreements {
+macro_rules! costs {
     ($(#[$doc:meta])* $name:ident, $words:ident, $put:ident $(, $name_of_mask:ident = $mask:expr)?) => {
         $(#[$doc])*
         #[inline(never)]
@@ -118,7 +118,8 @@ macro_rules! agreements {
                     columns = inout(reg) columns => _, end = out(reg) _, others = out(reg) _,
                     along = out(reg) _, across = out(reg) _, census = out(reg) _, brightness = out(reg) _,
                     t = out(reg) _, v = out(reg) _, w = out(reg) _, most = in(reg) most,
-                    margin = in(reg) margin, $($name_of_mask = in(reg) $mask,)? top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW,
+                    margin = in(reg) margin, $($name_of_mask = in(reg) $mask,)?
+                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW,
                     twos = in(reg) 0x5555_5555, fours = in(reg) 0x3333_3333, eights = in(reg) 0x0f0f_0f0f,
                     quarters = in(reg) 0x3f3f_3f3f, group = const NUMBERS * size_of::<u32>(),
                     options(nostack),
@@ -129,9 +130,9 @@ macro_rules! agreements {
 }
 
 /// Writes it. 1 instruction.
-macro_rules! put {
+macro_rules! put_word {
     ($place:literal) => {
-        concat!(agreement!($place), at!("sw", "v", $place, "columns"))
+        concat!(agreement_of!($place), at!("sw", "v", $place, "columns"))
     };
 }
 
@@ -139,7 +140,7 @@ macro_rules! put {
 macro_rules! average {
     ($place:literal) => {
         concat!(
-            agreement!($place),
+            agreement_of!($place),
             at!("lw", "t", $place, "columns"),
             op!("add", "v", "v", "t"),
             by!("srli", "v", "v", "1"),
@@ -161,28 +162,28 @@ struct Pixels {
     size: usize,
 }
 
-agreements! {
+costs! {
     /// Puts a row's agreements. 195 instructions, and 20 for a pixel.
     ///
     /// # Safety
     /// What `row` says is there, and columns of its pixels, which are not 0, of its size.
-    put_fours, fours, put
+    put_fours, fours, put_word
 }
-agreements! {
+costs! {
     /// Averages a row's agreements into its columns. 215 instructions, and 20 for a pixel.
     ///
     /// # Safety
     /// As of [`put_fours`].
     average_fours, fours, average, low = !TOP
 }
-agreements! {
+costs! {
     /// [`put_fours`] in columns of eight words. 384 instructions in all, and 21 for a pixel.
     ///
     /// # Safety
     /// As of that; a column has eight words.
-    put_eight, eight, put
+    put_eight, eight, put_word
 }
-agreements! {
+costs! {
     /// [`average_fours`] in columns of eight words. 424 instructions in all, and 21 for a pixel.
     ///
     /// # Safety

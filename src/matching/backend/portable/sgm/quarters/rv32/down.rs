@@ -2,7 +2,7 @@
 
 use super::super::columns::words;
 use super::super::steps::{Steps, close};
-use super::{BELOW, CHANGES, JUMPS, Row, has_eight};
+use super::row::{BELOW, CHANGES, JUMPS, Row, has_eight};
 use crate::matching::backend::portable::sgm::quarters::lanes::TOP;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
@@ -38,7 +38,7 @@ macro_rules! average {
 }
 
 /// What the word is that was before, more by the base and less by its costs; and added to the sums.
-macro_rules! put {
+macro_rules! put_path {
     ($path:literal, $offset:literal) => {
         concat!(
             at!("lw", "t", $offset, "costs"),
@@ -87,7 +87,7 @@ macro_rules! go_down {
                     "lw {b}, 0({to})",
                     "lw {c}, {far}({row})",
                     beside!("c"),
-                    column!($words, "to", put, "costs", "sums"),
+                    column!($words, "to", put_path, "costs", "sums"),
                     "lw {t}, {skip}({row})",
                     "add {one}, {one}, {t}",
                     "add {other}, {other}, {t}",
@@ -102,13 +102,17 @@ macro_rules! go_down {
                     here = inout(reg) here => _, above = inout(reg) above => _, count = inout(reg) count => _,
                     one = inout(reg) one => _, other = inout(reg) other => _, to = inout(reg) to => _,
                     costs = inout(reg) costs => _, sums = inout(reg) sums => _, row = in(reg) row,
-                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _, t = out(reg) _, u = out(reg) _,
-                    step = out(reg) _, bound = out(reg) _, behind = out(reg) _, base = out(reg) _, end = out(reg) _,
+                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _,
+                    t = out(reg) _, u = out(reg) _,
+                    step = out(reg) _, bound = out(reg) _, behind = out(reg) _,
+                    base = out(reg) _, end = out(reg) _,
                     top = in(reg) TOP, low = in(reg) !TOP, below = in(reg) BELOW, changes = const CHANGES,
                     jumps = const JUMPS, edge = in(reg) row.steps.edges[0],
-                    edge_of_much = in(reg) row.steps.edges[1], size = in(reg) row.size, far = const offset_of!(Steps, far),
+                    edge_of_much = in(reg) row.steps.edges[1], size = in(reg) row.size,
+                    far = const offset_of!(Steps, far),
                     of_base = const offset_of!(Steps, base),
-                    skip = const offset_of!(Row, skip), pixel = const offset_of!(Row, pixel), options(nostack),
+                    skip = const offset_of!(Row, skip), pixel = const offset_of!(Row, pixel),
+                    options(nostack),
                 );
             }
         }
@@ -120,8 +124,8 @@ go_down! {
     /// pixel.
     ///
     /// # Safety
-    /// There are so many pixels, one at least, as far apart as the row says, and of each the columns; the last two
-    /// kinds are written.
+    /// There are so many pixels, one at least, as far apart as the row says, and of each the columns;
+    /// the last two     /// kinds are written.
     fours_down, fours
 }
 go_down! {

@@ -1,10 +1,10 @@
 //! The path from the right and the winners: all pixels at once, or one by one where more is asked of them.
 
-use super::along::Pixels;
+use super::row::{Pixels, Row, has_eight};
 use super::select::{Selected, select_eight, select_fours};
-use super::{Row, has_eight, winner};
 use crate::matching::backend::portable::sgm::quarters::columns::words;
 use crate::matching::backend::portable::sgm::quarters::lanes::{before, least_of_four};
+use crate::matching::backend::portable::sgm::quarters::rounds;
 use crate::matching::backend::portable::sgm::quarters::second::{close_sums, second};
 use crate::matching::backend::portable::sgm::quarters::steps::close;
 use crate::matching::backend::work::{Guide, PathWork};
@@ -118,8 +118,14 @@ fn one_by_one(
         let found = winner(columns, candidates, more);
         put(x, found);
         unique.check(x, found.cost, || {
-            let winner = 4 * count - 1 - usize::from(found.disparity);
-            second(paths, sums, open, (closed, winner), more)
+            let winner_lane = 4 * count - 1 - usize::from(found.disparity);
+            second(paths, sums, open, (closed, winner_lane), |columns| winner(columns, 1, more).cost)
         });
     }
+}
+
+/// `rounds::plain::winner`, once: it is rarely asked for.
+#[inline(never)]
+fn winner(columns: [&[u32]; 2], candidates: usize, more: u32) -> Found {
+    rounds::winner(columns, candidates, more)
 }

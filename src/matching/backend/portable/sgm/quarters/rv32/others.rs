@@ -21,20 +21,20 @@ macro_rules! shift {
 
 /// All five numbers of a group, so many pixels from the rows' pixels.
 macro_rules! group {
-    ($pixel:literal, $least:literal, $greatest:literal, $across:literal, $census:literal, $brightness:literal) => {
+    ($pixel:literal: $least:literal $most:literal $across:literal $census:literal $bright:literal) => {
         concat!(
             at!("lbu", "u", $pixel, "least"),
             by!("addi", "u", "u", "128"),
             shift!($least),
             at!("lbu", "u", $pixel, "greatest"),
             op!("sub", "u", "most", "u"),
-            shift!($greatest),
+            shift!($most),
             at!("lbu", "u", $pixel, "across"),
             shift!($across),
             at!("lbu", "u", $pixel, "census"),
             shift!($census),
             at!("lbu", "u", $pixel, "brightness"),
-            shift!($brightness),
+            shift!($bright),
         )
     };
 }
@@ -61,10 +61,10 @@ pub(in super::super) fn shift_in<S: SgmParameters>(
     unsafe {
         asm!(
             "2:",
-            group!("0", "0", "4", "8", "12", "16"),
-            group!("1", "20", "24", "28", "32", "36"),
-            group!("2", "40", "44", "48", "52", "56"),
-            group!("3", "60", "64", "68", "72", "76"),
+            group!("0": "0" "4" "8" "12" "16"),
+            group!("1": "20" "24" "28" "32" "36"),
+            group!("2": "40" "44" "48" "52" "56"),
+            group!("3": "60" "64" "68" "72" "76"),
             "addi {least}, {least}, 4",
             "addi {greatest}, {greatest}, 4",
             "addi {across}, {across}, 4",

@@ -1,6 +1,6 @@
 //! The path from the right, and the winners of the paths' sums, of pixels that are asked for nothing else.
 
-use super::{BELOW, CHANGES, JUMPS, Row};
+use super::row::{BELOW, CHANGES, JUMPS, Row};
 use crate::matching::backend::portable::sgm::quarters::lanes::{NO_SUM, ONE, ONES, TOP};
 use crate::matching::memory::winners::Winner;
 use core::arch::asm;
@@ -17,7 +17,7 @@ pub(super) struct Selected {
 }
 
 /// What the word is that was before, less its costs; and the least so far.
-macro_rules! put {
+macro_rules! put_path {
     ($path:literal, $offset:literal) => {
         concat!(
             at!("lw", "t", $offset, "costs"),
@@ -29,7 +29,7 @@ macro_rules! put {
 }
 
 /// Makes the least of half the lanes, which is one word older, that of it and those in `t`.
-macro_rules! lesser_sum {
+macro_rules! lesser_of_older {
     ($least:literal) => {
         concat!(
             op!("add", $least, $least, "step"),
@@ -52,19 +52,19 @@ macro_rules! sum {
             op!("and", "u", "b", "even"),
             op!("add", "t", "t", "u"),
             by!("slli", "t", "t", "6"),
-            lesser_sum!("c"),
+            lesser_of_older!("c"),
             by!("srli", "a", "a", "2"),
             by!("srli", "b", "b", "2"),
             op!("and", "a", "a", "odd"),
             op!("and", "b", "b", "odd"),
             op!("add", "t", "a", "b"),
-            lesser_sum!("d"),
+            lesser_of_older!("d"),
         )
     };
 }
 
 /// Makes `a` the sum in `t` and `b` its lane, counted from the last one, if it is less than the sum in `a`.
-macro_rules! lane {
+macro_rules! lesser_lane {
     ($lane:literal) => {
         concat!(
             by!("andi", "u", "a", "-64"),
@@ -75,7 +75,7 @@ macro_rules! lane {
 }
 
 /// Makes a sum of two bytes a cost, up to 255, which is in `step`.
-macro_rules! cost {
+macro_rules! up_to_255 {
     ($sum:literal) => {
         concat!(
             op!("sub", $sum, $sum, "more"),
@@ -121,7 +121,7 @@ macro_rules! select {
                     "lw {c}, {far}({row})",
                     beside!("c"),
                     "li {least}, -1",
-                    column!($words, "path", put, "costs"),
+                    column!($words, "path", put_path, "costs"),
                     least_of_four!("least"),
                     from_its_start!($words),
                     "bltu {count}, {size}, 10f",
@@ -137,14 +137,14 @@ macro_rules! select {
                     "li {step}, 255",
                     "li {b}, 0",
                     "srli {a}, {d}, 16",
-                    concat!("srli {t}, {c}, 16\n", lane!("1")),
-                    concat!("slli {t}, {d}, 16\n srli {t}, {t}, 16\n", lane!("2")),
-                    concat!("slli {t}, {c}, 16\n srli {t}, {t}, 16\n", lane!("3")),
+                    concat!("srli {t}, {c}, 16\n", lesser_lane!("1")),
+                    concat!("slli {t}, {d}, 16\n srli {t}, {t}, 16\n", lesser_lane!("2")),
+                    concat!("slli {t}, {c}, 16\n srli {t}, {t}, 16\n", lesser_lane!("3")),
                     // Words behind it, and its cost.
                     "andi {c}, {a}, 63",
                     "srli {a}, {a}, 6",
                     "andi {a}, {a}, 0x1ff",
-                    cost!("a"),
+                    up_to_255!("a"),
                     // Behind the candidate's byte in both columns; and its disparity.
                     "slli {t}, {c}, 2",
                     "add {t}, {t}, {b}",
@@ -164,9 +164,9 @@ macro_rules! select {
                     "lbu {d}, 3({t})",
                     "4:",
                     "add {bound}, {bound}, {behind}",
-                    cost!("bound"),
+                    up_to_255!("bound"),
                     "add {c}, {c}, {d}",
-                    cost!("c"),
+                    up_to_255!("c"),
                     // Where there is none on one side, the other one.
                     "addi {d}, {b}, 1",
                     "bgeu {d}, {count}, 18f",
@@ -253,14 +253,18 @@ macro_rules! select {
                     "mv {bound}, {a}",
                     "j 19b",
                     "9:",
-                    kinds = inout(reg) kinds => _, count = inout(reg) count => _, costs = inout(reg) costs => _,
-                    sums = inout(reg) sums => _, winners = inout(reg) winners => _, path = inout(reg) path => _,
+                    kinds = inout(reg) kinds => _, count = inout(reg) count => _,
+                    costs = inout(reg) costs => _,
+                    sums = inout(reg) sums => _, winners = inout(reg) winners => _,
+                    path = inout(reg) path => _,
                     end = in(reg) path.wrapping_byte_add(row.size), change = inout(reg) row => _,
                     least = inout(reg) 0 => _, row = in(reg) row, size = in(reg) row.size,
                     even = in(reg) 0x00ff_00ff, odd = in(reg) 0x3fc0_3fc0, more = out(reg) _,
-                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _, t = out(reg) _, u = out(reg) _,
+                    a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _,
+                    t = out(reg) _, u = out(reg) _,
                     step = out(reg) _, bound = out(reg) _, behind = out(reg) _,
-                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW, changes = const CHANGES, jumps = const JUMPS,
+                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW,
+                    changes = const CHANGES, jumps = const JUMPS,
                     far = const offset_of!(Row, steps.far), of_more = const offset_of!(Row, more),
                     none = const NO_SUM, ones_of_halves = const ONES, options(nostack),
                 );

@@ -1,9 +1,8 @@
 //! The paths along the row.
 
-use super::super::columns::words;
 use super::row::{BELOW, CHANGES, JUMPS, Pixels, Row};
-use crate::matching::backend::portable::sgm::quarters::lanes::least_of_four;
-use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
+use crate::matching::backend::portable::sgm::quarters::columns::words;
+use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP, least_of_four};
 use crate::matching::backend::portable::sgm::quarters::steps::close;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::views::{view, view_mut};
@@ -22,7 +21,7 @@ macro_rules! put_path {
     };
 }
 
-/// The loop over pixels, whose columns have `four` words in a round or `eight` in all.
+/// The loop over pixels, through whose columns it goes in `fours` of words or in `eight` at once.
 macro_rules! along {
     ($(#[$doc:meta])* $name:ident, $words:ident) => {
         $(#[$doc])*
@@ -123,7 +122,7 @@ pub(in super::super) fn right<const WORDS: usize, const ALL: bool>(
             before,
             least,
         };
-        // Where candidates stand beyond the search, one at a time: their costs are no path's.
+        // Where lanes stand beyond the search a pixel at a time: no path comes from there.
         let next = if beyond > 0 { 1 } else { width };
         // SAFETY: there are as many pixels, kinds and columns, and cells may be written.
         least = unsafe { (row.along)(row, pixels, next) };

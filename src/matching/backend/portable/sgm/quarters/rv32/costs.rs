@@ -78,8 +78,8 @@ macro_rules! cut {
     };
 }
 
-/// The loops over pixels and the words of their columns, which `$put` an agreement that is in `v` in its
-/// place, so many bytes from `columns`.
+/// The loops over pixels and the words of their columns, `fours` in a round or `eight` in all, of which
+/// `$put` makes and writes each.
 macro_rules! costs {
     ($(#[$doc:meta])* $name:ident, $words:ident, $put:ident $(, $name_of_mask:ident = $mask:expr)?) => {
         $(#[$doc])*
@@ -129,14 +129,14 @@ macro_rules! costs {
     };
 }
 
-/// Writes it. 1 instruction.
+/// Writes the agreement that belongs at so many bytes from `columns`. 49 instructions.
 macro_rules! put_word {
     ($place:literal) => {
         concat!(agreement_of!($place), at!("sw", "v", $place, "columns"))
     };
 }
 
-/// Writes the average of it and what stands there. 6 instructions.
+/// Writes the average of that agreement and what stands there. 53 instructions.
 macro_rules! average {
     ($place:literal) => {
         concat!(
@@ -150,7 +150,7 @@ macro_rules! average {
     };
 }
 
-/// Pixels of a row.
+/// What assembly takes of a row's pixels.
 struct Pixels {
     others: *const Others,
     /// The left image's features of three kinds, one `width` behind the other, and its brightness.

@@ -52,7 +52,7 @@ macro_rules! put_path {
     };
 }
 
-/// The loop over pixels, whose columns have `four` words in a round or `eight` in all.
+/// The loop over pixels, through whose columns it goes in `fours` of words or in `eight` at once.
 macro_rules! go_down {
     ($(#[$doc:meta])* $name:ident, $words:ident) => {
         $(#[$doc])*

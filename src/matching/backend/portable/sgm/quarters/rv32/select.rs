@@ -94,7 +94,7 @@ macro_rules! from_its_start {
     };
 }
 
-/// The loop over pixels, whose columns have `four` words in a round or `eight` in all.
+/// The loop over pixels, through whose columns it goes in `fours` of words or in `eight` at once.
 macro_rules! select {
     ($(#[$doc:meta])* $name:ident, $words:ident) => {
         $(#[$doc])*

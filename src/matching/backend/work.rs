@@ -1,6 +1,8 @@
 //! What the stages hand to a target's code: slices of a row and plain numbers.
 
+use super::loops::fill_bytes;
 use crate::matching::memory::Rows5;
+use crate::matching::memory::slices::{chunks_mut, part_mut};
 use crate::matching::memory::winners::{Lengths, Winners};
 use crate::matching::penalties::Penalties;
 use crate::units::{Disparity, PixelFlags};
@@ -66,7 +68,7 @@ pub(in crate::matching) struct CostWork<'a> {
 /// A row's costs and the paths through it.
 ///
 /// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`, where that lies left of
-/// the image its first column. Lanes beyond the disparities that are searched stand where no path comes from.
+/// the image its first column. Lanes beyond the disparities that are searched are closed: see [`Self::close`].
 pub(in crate::matching) struct PathWork<'a> {
     /// Pixels in the row.
     pub width: usize,
@@ -88,6 +90,22 @@ pub(in crate::matching) struct PathWork<'a> {
     /// What the passes that select winners work with: two bytes for each pixel, and six for each disparity
     /// but the last eight of all.
     pub workspace: &'a mut [u32],
+}
+
+impl PathWork<'_> {
+    /// Puts what stands for a cost in all lanes beyond the search, of columns of so many bytes.
+    ///
+    /// With the most that a cost may be no path there is ever less than at the last disparity that is
+    /// searched, so that none comes from there and none wins: minima, sums and averages keep that order.
+    #[inline(always)]
+    pub fn close(&mut self, stride: usize, cost: u8) {
+        let beyond = stride.saturating_sub(self.disparities);
+        if beyond > 0 {
+            for column in chunks_mut(self.costs, stride) {
+                fill_bytes(part_mut(column, ..beyond), cost);
+            }
+        }
+    }
 }
 
 /// What the passes that select winners look at besides the costs.

@@ -26,7 +26,6 @@ use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::portable::sgm::{Passes, words};
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork, STEP};
-use crate::matching::memory::slices::{chunks_mut, part_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Found, Select, Unique, Winner};
 use crate::matching::penalties::Penalties;
@@ -49,16 +48,10 @@ impl<const WORDS: usize, const ALL: bool> Passes for Words<WORDS, ALL> {
     fn enter<S: SgmParameters>(work: &mut PathWork<'_>, features: &Features<'_>) {
         let Features { left, right, count } = *features;
         let stride = stride::<WORDS, ALL>(work);
-        let beyond = stride.saturating_sub(work.disparities);
         let left = [left.along, left.across, left.census, left.brightness];
         let costs = view_mut::<u8, u32>(work.costs);
         blocks::enter::<S>(costs, stride, left, right, count, splat(work.penalties.cost));
-        if beyond > 0 {
-            let least = beyond_search(work.penalties);
-            for column in chunks_mut(work.costs, stride) {
-                fill_bytes(part_mut(column, ..beyond), least);
-            }
-        }
+        work.close(stride, beyond_search(work.penalties));
     }
 
     #[inline(always)]

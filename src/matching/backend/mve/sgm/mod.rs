@@ -10,8 +10,6 @@
 //!   the average of two of them one of at most `cost + jump / 2`, so that `least + jump` is at most 190 by
 //!   what `Penalties::check` asks for; and a step from a path's cost that is more than 255 counts as 255,
 //!   which is more than any cost that it is compared with.
-//! * Lanes beyond the search cost as much as a pixel can. So no path there ever is less than at the last
-//!   disparity that is searched, and none comes from there: minima, sums and averages keep that order.
 //!
 //! * `features`: what is compared. `cost`: its comparison. `edges`: how far costs are averaged.
 //! * `changes`: what the paths pay at each pixel. `down`, `rightward`, `leftward`: the paths, the last one
@@ -33,7 +31,7 @@ use super::LANES;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features as portable;
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
-use crate::matching::memory::slices::{chunks_mut, part_mut, split_mut};
+use crate::matching::memory::slices::{part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use changes::changes;
@@ -85,12 +83,7 @@ fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, row: Co
     } else {
         any::enter::<S>(work, &features);
     }
-    let beyond = work.stride.saturating_sub(work.disparities);
-    if beyond > 0 {
-        for column in chunks_mut(work.costs, work.stride) {
-            part_mut(column, ..beyond).fill(work.penalties.cost);
-        }
-    }
+    work.close(work.stride, work.penalties.cost);
 }
 
 #[inline(never)]

@@ -80,12 +80,6 @@ pub(super) fn select<G: Group, const CELLS: usize>(
                 *sum = right.plus(top).cell();
             },
         );
-        if let Some(beyond) = &steps.beyond {
-            for (kept, &beyond) in kept.iter_mut().zip(&beyond.0) {
-                keep_loop();
-                *kept = G::of(*kept).max(beyond).cell();
-            }
-        }
     }
 
     let mut left = Walk::new(&steps);
@@ -162,15 +156,6 @@ impl<G: Group, const CELLS: usize> Walk<G, CELLS> {
             least = least.min(cost);
             put(with, cost);
         });
-        if let Some(beyond) = &steps.beyond {
-            least = steps.far;
-            let cells = part_mut(&mut self.cells, ..costs.len());
-            for (cell, &beyond) in cells.iter_mut().zip(&beyond.0) {
-                keep_loop();
-                *cell = cell.max(beyond);
-                least = least.min(*cell);
-            }
-        }
         self.least = least.least();
     }
 }

@@ -42,7 +42,6 @@ impl<'a, G: Group, const CELLS: usize, const ALL: bool> Gather<'a, G, CELLS, ALL
             self.right = self.right.step(steps, steps.between(here, self.before), costs);
         }
         self.before = here;
-        steps.close(&mut self.right);
         let mut top = Path::of(costs);
         if let Some(above) = above {
             let ahead = column::<_, CELLS, ALL>(self.tops, (x + COLUMNS_OFF).min(self.last), self.count);
@@ -50,7 +49,6 @@ impl<'a, G: Group, const CELLS: usize, const ALL: bool> Gather<'a, G, CELLS, ALL
             self.passed = [self.passed[1], Path::of(column::<_, CELLS, ALL>(self.tops, x, self.count))];
             top = between.step(steps, steps.between(here, above), costs);
         }
-        steps.close(&mut top);
         let kept = column_mut::<_, CELLS, ALL>(self.tops, x, self.count);
         let mut sum = self.right;
         for (kept, (sum, &top)) in kept.iter_mut().zip(sum.0.iter_mut().zip(&top.0)) {

@@ -38,6 +38,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Passes for Groups<G, CELLS, 
     #[inline(always)]
     fn enter<S: SgmParameters>(work: &mut PathWork<'_>, features: &Features<'_>) {
         cost::enter::<G, S, CELLS, ALL>(work, features);
+        work.close(stride::<G, CELLS, ALL>(work), work.penalties.cost);
     }
 
     #[inline(always)]
@@ -181,8 +182,6 @@ struct Steps<G: Group, const CELLS: usize, const ALL: bool> {
     changes: [[G::Cell; 2]; 4],
     /// The changes of brightness at which it is more, and much.
     edges: [u8; 2],
-    /// `far` where lanes are beyond the search, and 0 where they are not, if there are such lanes.
-    beyond: Option<Path<G, CELLS, ALL>>,
 }
 
 impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
@@ -190,21 +189,11 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
     fn new(work: &PathWork<'_>) -> Self {
         // No path costs more: `Penalties::check`.
         let far = 127u8.saturating_sub(work.penalties.step[0]);
-        let stride = stride::<G, CELLS, ALL>(work);
-        let beyond = if work.disparities < stride {
-            let mut beyond = Path([G::splat(0); CELLS]);
-            for (cell, &mask) in beyond.0.iter_mut().zip(G::groups(mask(stride, work.disparities))) {
-                *cell = G::of_bytes(mask).and(G::splat(far));
-            }
-            Some(beyond)
-        } else {
-            None
-        };
         let [little, more, much] = work
             .penalties
             .changes()
             .map(|change| [change.step, change.jump].map(|cost| G::splat(cost).cell()));
-        Self { far: G::splat(far), changes: [little, more, much, much], edges: work.penalties.edges, beyond }
+        Self { far: G::splat(far), changes: [little, more, much, much], edges: work.penalties.edges }
     }
 
     /// What a step and a jump cost between two pixels of the left image.
@@ -229,16 +218,6 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Steps<G, CELLS, ALL> {
     #[inline(always)]
     fn change(&self, grade: u8) -> &[G::Cell; 2] {
         &self.changes[usize::from(grade & 3)]
-    }
-
-    /// Closes a path's lanes that are beyond the search.
-    #[inline(always)]
-    fn close(&self, path: &mut Path<G, CELLS, ALL>) {
-        if let Some(beyond) = &self.beyond {
-            for (cell, &beyond) in path.0.iter_mut().zip(&beyond.0) {
-                *cell = cell.max(beyond);
-            }
-        }
     }
 }
 
@@ -302,6 +281,7 @@ mod tests {
                 sums: &mut view_mut::<u32, u8>(&mut sums)[..width * stride],
                 workspace: &mut [],
             };
+            work.close(stride, Penalties::DEFAULT.cost);
             let mut found: Row = ([None; WIDTH], [0; WIDTH], [PixelFlags::CLEAR; WIDTH]);
             let (winners, margins, flags) = (&mut found.0, &mut found.1, &mut found.2);
             let unique = Unique::new(Some(5), flags, margins);

@@ -31,7 +31,6 @@ impl<G: Group, const CELLS: usize, const ALL: bool> LeftwardPath<G, CELLS, ALL> 
             self.left = self.left.step(steps, steps.between(here, after), costs);
         }
         self.after = Some(here);
-        steps.close(&mut self.left);
         self.left
     }
 }

@@ -59,7 +59,6 @@ pub(super) fn select<G: Group, const CELLS: usize>(
         let change = x.checked_sub(1).map_or(0, |before| along[before]);
         let gathered = right.next(&steps, (change, down[x]), &costs[x], tops, x);
         left = left.step(&steps, steps.change(along[y]), &costs[y]);
-        steps.close(&mut left);
         if x < y {
             gathered.put(&mut sums[x]);
             left.put(&mut sums[y]);
@@ -104,13 +103,11 @@ impl<G: Group, const CELLS: usize> Gather<G, CELLS> {
         x: usize,
     ) -> Path<G, CELLS, true> {
         self.right = self.right.step(steps, steps.change(along), costs);
-        steps.close(&mut self.right);
         let mut sum = self.right;
         if let Some([here, .., ahead]) = tops.get_mut(x..=x + COLUMNS_OFF) {
             let between = self.passed[0].average(&*ahead);
             self.passed = [self.passed[1], Path::of(&*here)];
-            let mut top = between.step(steps, steps.change(down), costs);
-            steps.close(&mut top);
+            let top = between.step(steps, steps.change(down), costs);
             top.put(here);
             for (sum, &top) in sum.0.iter_mut().zip(&top.0) {
                 *sum = sum.plus(top);

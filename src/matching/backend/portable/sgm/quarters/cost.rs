@@ -4,7 +4,7 @@
 //! difference that ends at 0 cuts the cost off, and the average, which is rounded down, rounds the cost up.
 
 use super::columns::words;
-use super::lanes::splat;
+use super::lanes::{before, splat};
 use super::others::{Costs, LANES, NUMBERS, Others};
 use super::paths::{self, shift_in};
 use super::steps::margin;
@@ -12,7 +12,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::work::PathWork;
-use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::slices::{chunks_mut, part, part_mut};
 use crate::matching::memory::views::view_mut;
 use core::cell::Cell;
 
@@ -53,5 +53,23 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
         let columns = part_mut(columns, x * words..(x + pixels) * words);
         paths::enter::<S, WORDS, ALL>(&costs, x, part(&others, first..), columns);
         x += pixels;
+    }
+    close::<WORDS, ALL>(work);
+}
+
+/// [`PathWork::close`] in the order of the words.
+#[inline(always)]
+fn close<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>) {
+    let words = words::<WORDS, ALL>(work);
+    let beyond = (LANES * words).saturating_sub(work.disparities);
+    if beyond > 0 {
+        let (closed, margin) = (before(beyond, words), splat(margin(work.penalties).into()));
+        for column in chunks_mut(view_mut::<u8, u32>(work.costs), words) {
+            for (word, costs) in column.iter_mut().enumerate().take(beyond) {
+                keep_loop();
+                let lanes = closed(word);
+                *costs = *costs & !lanes | margin & lanes;
+            }
+        }
     }
 }

@@ -1,7 +1,6 @@
 //! What a step of a path costs.
 
-use super::lanes::{TOP, before, lesser, splat};
-use crate::matching::backend::loops::keep_loop;
+use super::lanes::{TOP, splat};
 use crate::matching::penalties::Penalties;
 use core::cell::Cell;
 
@@ -73,19 +72,4 @@ impl Steps {
 pub(super) fn beside(column: &[Cell<u32>], far: u32) -> [u32; 2] {
     let [first, last] = [column.first(), column.last()].map(|word| word.map_or(0, Cell::get));
     [(last << 8 | far) | TOP, first >> 8 | far << 24]
-}
-
-/// Makes `far` the costs of the candidates before one, where no path is to come from; returns the least of
-/// all, marked, in each lane.
-#[inline(never)]
-pub(super) fn close(cells: &[Cell<u32>], place: usize, far: u32) -> u32 {
-    let mut least = u32::MAX;
-    let closed = before(place, cells.len());
-    for (word, cell) in cells.iter().enumerate() {
-        keep_loop();
-        let lanes = closed(word);
-        cell.set(cell.get() & !lanes | splat(far) & lanes);
-        least = lesser(least, cell.get());
-    }
-    least
 }

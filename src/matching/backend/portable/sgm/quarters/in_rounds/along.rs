@@ -1,9 +1,8 @@
 //! The paths along the row.
 
 use crate::matching::backend::portable::sgm::quarters::columns::words;
-use crate::matching::backend::portable::sgm::quarters::lanes::least_of_four;
 use crate::matching::backend::portable::sgm::quarters::rounds;
-use crate::matching::backend::portable::sgm::quarters::steps::{Steps, close};
+use crate::matching::backend::portable::sgm::quarters::steps::Steps;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{chunks, part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
@@ -14,16 +13,13 @@ use core::cell::Cell;
 pub(super) struct Along {
     steps: Steps,
     least: u32,
-    /// Candidates that stand before those that are searched.
-    beyond: usize,
 }
 
 impl Along {
     /// Before the first pixel all cost nothing.
     #[inline(always)]
     pub fn new(work: &PathWork<'_>, count: usize) -> Self {
-        let beyond = (4 * count).saturating_sub(work.disparities);
-        Self { steps: Steps::new(work.penalties, count), least: 0, beyond }
+        Self { steps: Steps::new(work.penalties, count), least: 0 }
     }
 
     /// Goes on from the column `from`, or from no costs, to `to`, a pixel that has these costs and differs by
@@ -32,9 +28,6 @@ impl Along {
     pub fn advance(&mut self, change: u8, costs: &[u32], from: &[Cell<u32>], to: &[Cell<u32>]) -> u32 {
         let (least, jump) = rounds::along(&self.steps, (change, self.least), costs, from, to);
         self.least = least;
-        if self.beyond > 0 {
-            self.least = least_of_four(close(to, self.beyond, self.steps.far));
-        }
         jump
     }
 }

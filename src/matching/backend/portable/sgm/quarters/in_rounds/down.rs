@@ -2,7 +2,7 @@
 
 use crate::matching::backend::portable::sgm::quarters::columns::{column, words};
 use crate::matching::backend::portable::sgm::quarters::rounds;
-use crate::matching::backend::portable::sgm::quarters::steps::{Steps, close};
+use crate::matching::backend::portable::sgm::quarters::steps::Steps;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
 use crate::matching::memory::views::{view, view_mut};
@@ -17,7 +17,6 @@ use core::cell::Cell;
 pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
     let (count, last) = (words::<WORDS, ALL>(work), work.width.wrapping_sub(1));
     let steps = Steps::new(work.penalties, count);
-    let beyond = (4 * count).saturating_sub(work.disparities);
     let costs = view::<u8, u32>(work.costs);
     let tops = Cell::from_mut(view_mut::<u8, u32>(work.top)).as_slice_of_cells();
     let sums = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
@@ -42,8 +41,5 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
             kept.iter().for_each(|path| path.set(0));
         }
         rounds::down(&steps, (here.abs_diff(above), least), costs, kept, sums);
-        if beyond > 0 {
-            close(kept, beyond, steps.far);
-        }
     }
 }

@@ -40,11 +40,11 @@ pub(super) fn left<const WORDS: usize, const ALL: bool>(
         let jumps = u32::from(jump) + path.advance(here.abs_diff(after), costs, cells, cells);
         after = here;
         let more = more.wrapping_sub(jumps);
-        // The first pixels have fewer candidates than there are lanes.
+        // The first pixels have fewer candidates than are searched.
         let candidates = disparities.min(x + 1 - min_disparity);
         let closed = 4 * count - candidates;
         let mut columns = [&*paths, &*sums];
-        if closed > 0 {
+        if candidates < disparities {
             close_sums(paths, sums, open, before(closed, count));
             columns = [open, sums];
         }

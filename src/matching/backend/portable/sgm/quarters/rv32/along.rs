@@ -2,12 +2,10 @@
 
 use super::row::{BELOW, CHANGES, JUMPS, Pixels, Row};
 use crate::matching::backend::portable::sgm::quarters::columns::words;
-use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP, least_of_four};
-use crate::matching::backend::portable::sgm::quarters::steps::close;
+use crate::matching::backend::portable::sgm::quarters::lanes::{ONE, TOP};
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::views::{view, view_mut};
 use core::arch::asm;
-use core::cell::Cell;
 
 /// What the word is that was before, less its costs; and the least so far.
 macro_rules! put_path {
@@ -102,35 +100,24 @@ pub(in super::super) fn right<const WORDS: usize, const ALL: bool>(
     guide: Guide<'_>,
 ) {
     let count = words::<WORDS, ALL>(work);
-    let (width, beyond) = (work.width, (4 * count).saturating_sub(work.disparities));
+    let width = work.width;
     let costs = view::<u8, u32>(work.costs);
-    let columns = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
+    let columns = view_mut::<u8, u32>(work.sums);
     let kinds = view_mut::<u32, u8>(work.workspace);
     let lengths = [costs.len() / count.max(1), columns.len() / count.max(1), kinds.len(), guide.here.len()];
     if width == 0 || count > WORDS || lengths.into_iter().any(|length| length < width) {
         return;
     }
     let none = [0u32; WORDS];
-    let (mut x, mut least, mut before) = (0, 0, 0);
-    while x < width {
-        let pixels = Pixels {
-            here: guide.here.as_ptr().wrapping_add(x),
-            kinds: kinds.as_mut_ptr().wrapping_add(x),
-            costs: costs.as_ptr().wrapping_add(x * count),
-            from: if x == 0 { none.as_ptr() } else { columns.as_ptr().wrapping_add((x - 1) * count).cast() },
-            to: columns.as_ptr().wrapping_add(x * count).cast_mut().cast(),
-            before,
-            least,
-        };
-        // Where lanes stand beyond the search a pixel at a time: no path comes from there.
-        let next = if beyond > 0 { 1 } else { width };
-        // SAFETY: there are as many pixels, kinds and columns, and cells may be written.
-        least = unsafe { (row.along)(row, pixels, next) };
-        if beyond > 0 {
-            let column = columns.get(x * count..(x + 1) * count).unwrap_or_default();
-            least = least_of_four(close(column, beyond, row.steps.far));
-        }
-        before = guide.here.get(x).copied().unwrap_or(0);
-        x += next;
-    }
+    let pixels = Pixels {
+        here: guide.here.as_ptr(),
+        kinds: kinds.as_mut_ptr(),
+        costs: costs.as_ptr(),
+        from: none.as_ptr(),
+        to: columns.as_mut_ptr(),
+        before: 0,
+        least: 0,
+    };
+    // SAFETY: there are as many pixels, kinds and columns.
+    unsafe { (row.along)(row, pixels, width) };
 }

@@ -1,7 +1,7 @@
 //! The path from above.
 
 use super::super::columns::words;
-use super::super::steps::{Steps, close};
+use super::super::steps::Steps;
 use super::row::{BELOW, CHANGES, JUMPS, Row, has_eight};
 use crate::matching::backend::portable::sgm::quarters::lanes::TOP;
 use crate::matching::backend::work::{Guide, PathWork};
@@ -125,7 +125,7 @@ go_down! {
     ///
     /// # Safety
     /// There are so many pixels, one at least, as far apart as the row says, and of each the columns;
-    /// the last two     /// kinds are written.
+    /// the last two kinds are written.
     fours_down, fours
 }
 go_down! {
@@ -145,7 +145,7 @@ pub(in super::super) fn down<const WORDS: usize, const ALL: bool>(
     guide: Guide<'_>,
 ) {
     let count = words::<WORDS, ALL>(work);
-    let (width, beyond) = (work.width, (4 * count).saturating_sub(work.disparities));
+    let width = work.width;
     let costs = view::<u8, u32>(work.costs);
     let tops = Cell::from_mut(view_mut::<u8, u32>(work.top)).as_slice_of_cells();
     let sums = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
@@ -165,9 +165,9 @@ pub(in super::super) fn down<const WORDS: usize, const ALL: bool>(
     let mut i = 0;
     while i < width {
         let x = if is_odd { last - i } else { i };
-        // At the ends of the row, and where candidates stand beyond the search, one at a time.
+        // At the ends of the row one at a time.
         let inside = width.saturating_sub(2 * COLUMNS_OFF);
-        let is_run = i == COLUMNS_OFF && inside > 0 && beyond == 0 && guide.above.is_some();
+        let is_run = i == COLUMNS_OFF && inside > 0 && guide.above.is_some();
         let next = if is_run { inside } else { 1 };
         let both = [x.saturating_sub(COLUMNS_OFF), (x + COLUMNS_OFF).min(last)];
         let both = if guide.above.is_some() {
@@ -186,10 +186,6 @@ pub(in super::super) fn down<const WORDS: usize, const ALL: bool>(
         // SAFETY: there are as many pixels and columns in the way that the row is gone through, and cells may
         // be written.
         unsafe { (if has_eight::<WORDS, ALL>() { eight_down } else { fours_down })(row, pixels, next) };
-        if beyond > 0 {
-            let kept = tops.get((x + to) * count..(x + to + 1) * count).unwrap_or_default();
-            close(kept, beyond, row.steps.far);
-        }
         i += next;
     }
 }

@@ -3,15 +3,13 @@
 use super::row::{Pixels, Row, has_eight};
 use super::select::{Selected, select_eight, select_fours};
 use crate::matching::backend::portable::sgm::quarters::columns::words;
-use crate::matching::backend::portable::sgm::quarters::lanes::{before, least_of_four};
+use crate::matching::backend::portable::sgm::quarters::lanes::before;
 use crate::matching::backend::portable::sgm::quarters::rounds;
 use crate::matching::backend::portable::sgm::quarters::second::{close_sums, second};
-use crate::matching::backend::portable::sgm::quarters::steps::close;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
 use crate::matching::memory::winners::{Found, Unique, Winner};
-use core::cell::Cell;
 
 /// Takes the path from the right along the row, and selects the winner of every pixel that has a candidate,
 /// by the sum of its three paths. What the path from the left has put in the workspace stands there.
@@ -41,27 +39,21 @@ pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
         && 4 * work.workspace.len() >= width
         && winners.len() >= width
         && count <= WORDS;
-    if work.disparities == 4 * count && begin < width && is_there {
-        let last = width - 1;
-        let select = if has_eight::<WORDS, ALL>() { select_eight } else { select_fours };
-        let pixels = Selected {
-            kinds: view::<u32, u8>(work.workspace).as_ptr().wrapping_add(last),
-            costs: costs.as_ptr().wrapping_add(last * count),
-            sums: sums.as_ptr().wrapping_add(last * count),
-            winners: winners.as_mut_ptr().wrapping_add(last),
-            path: room.as_flattened_mut().as_mut_ptr(),
-        };
-        // SAFETY: there are as many pixels from the first one on that has a candidate, and their columns.
-        unsafe { select(row, pixels, width - begin) };
+    if begin >= width || !is_there {
         return;
     }
-    let put = &mut |x: usize, found: Found| {
-        if let Some(winner) = winners.get_mut(x) {
-            *winner = Winner::new(found.cost, found.disparity, found.beside);
-        }
+    let last = width - 1;
+    let select = if has_eight::<WORDS, ALL>() { select_eight } else { select_fours };
+    let pixels = Selected {
+        kinds: view::<u32, u8>(work.workspace).as_ptr().wrapping_add(last),
+        costs: costs.as_ptr().wrapping_add(last * count),
+        sums: sums.as_ptr().wrapping_add(last * count),
+        winners: winners.as_mut_ptr().wrapping_add(last),
+        path: room.as_flattened_mut().as_mut_ptr(),
+        disparities: work.disparities,
     };
-    let unique = &mut Unique::new(None, &mut [], &mut []);
-    one_by_one(row, (work, guide), room.each_mut().map(|room| &mut room[..]), unique, put);
+    // SAFETY: there are as many pixels from the first one on that has a candidate, and their columns.
+    unsafe { select(row, pixels, width - begin) };
 }
 
 /// [`left`] with room for the path's column and for what counts of it, both of zeros.
@@ -75,7 +67,6 @@ fn one_by_one(
 ) {
     let PathWork { width, disparities, min_disparity, .. } = *work;
     let count = words::<0, false>(work);
-    let beyond = (4 * count).saturating_sub(disparities);
     let [paths, open] = [paths, open].map(|room| part_mut(room, ..count));
     let costs = view::<u8, u32>(work.costs);
     let sums = view_mut::<u8, u32>(work.sums);
@@ -101,17 +92,13 @@ fn one_by_one(
         };
         // SAFETY: a pixel, and its columns.
         least = unsafe { (row.along)(row, pixels, 1) };
-        if beyond > 0 {
-            let cells = Cell::from_mut(&mut *paths).as_slice_of_cells();
-            least = least_of_four(close(cells, beyond, row.steps.far));
-        }
         let jump = |kind: u8| row.steps.changes[2usize.saturating_sub(usize::from(kind / 8))].jump;
         let more = row.more.wrapping_sub(jump(kind)).wrapping_sub(jump(after));
-        // The first pixels have fewer candidates than there are lanes.
+        // The first pixels have fewer candidates than are searched.
         let candidates = disparities.min(x + 1 - min_disparity);
         let closed = 4 * count - candidates;
         let mut columns = [&*paths, &*sums];
-        if closed > 0 {
+        if candidates < disparities {
             close_sums(paths, sums, open, before(closed, count));
             columns = [&*open, &*sums];
         }

@@ -1,7 +1,7 @@
 //! The path from the right, and the winners of the paths' sums, of pixels that are asked for nothing else.
 
 use super::row::{BELOW, CHANGES, JUMPS, Row};
-use crate::matching::backend::portable::sgm::quarters::lanes::{NO_SUM, ONE, ONES, TOP};
+use crate::matching::backend::portable::sgm::quarters::lanes::{NO_SUM, ONES, TOP};
 use crate::matching::memory::winners::Winner;
 use core::arch::asm;
 use core::mem::offset_of;
@@ -14,6 +14,8 @@ pub(super) struct Selected {
     pub sums: *const u32,
     pub winners: *mut Winner,
     pub path: *mut u32,
+    /// How many are searched.
+    pub disparities: usize,
 }
 
 /// What the word is that was before, less its costs; and the least so far.
@@ -100,7 +102,7 @@ macro_rules! select {
         $(#[$doc])*
         #[inline(never)]
         pub(super) unsafe fn $name(row: &Row, pixels: Selected, count: usize) {
-            let Selected { kinds, costs, sums, winners, path } = pixels;
+            let Selected { kinds, costs, sums, winners, path, disparities } = pixels;
             // SAFETY: as the caller says.
             unsafe {
                 asm!(
@@ -116,7 +118,8 @@ macro_rules! select {
                     "lw {t}, {jumps}({change})",
                     "sub {more}, {more}, {t}",
                     "add {bound}, {bound}, {least}",
-                    "mul {bound}, {bound}, {ones}",
+                    "srli {t}, {top}, 7",
+                    "mul {bound}, {bound}, {t}",
                     "lw {b}, 0({path})",
                     "lw {c}, {far}({row})",
                     beside!("c"),
@@ -124,7 +127,7 @@ macro_rules! select {
                     column!($words, "path", put_path, "costs"),
                     least_of_four!("least"),
                     from_its_start!($words),
-                    "bltu {count}, {size}, 10f",
+                    "bltu {count}, {searched}, 10f",
                     // The least sums of the even and of the odd lanes.
                     "11:",
                     "li {step}, {ones_of_halves}",
@@ -170,7 +173,7 @@ macro_rules! select {
                     // Where there is none on one side, the other one.
                     "addi {d}, {b}, 1",
                     "bgeu {d}, {count}, 18f",
-                    "bgeu {d}, {size}, 18f",
+                    "bgeu {d}, {searched}, 18f",
                     "19:",
                     "bnez {b}, 5f",
                     "mv {c}, {bound}",
@@ -184,7 +187,7 @@ macro_rules! select {
                     "sw {c}, 0({winners})",
                     "addi {winners}, {winners}, -4",
                     // The columns before.
-                    "bltu {count}, {size}, 14f",
+                    "bltu {count}, {searched}, 14f",
                     "15:",
                     "sub {path}, {end}, {size}",
                     "slli {t}, {size}, 1",
@@ -207,7 +210,7 @@ macro_rules! select {
                     "lbu {c}, 4({u})",
                     "lbu {d}, 4({t})",
                     "j 4b",
-                    // Of fewer candidates than lanes: the others' sums are more than any.
+                    // Of fewer candidates than are searched: the other lanes' sums are more than any.
                     "10:",
                     "sub {a}, {size}, {count}",
                     "srli {d}, {size}, 2",
@@ -263,7 +266,7 @@ macro_rules! select {
                     a = out(reg) _, b = out(reg) _, c = out(reg) _, d = out(reg) _,
                     t = out(reg) _, u = out(reg) _,
                     step = out(reg) _, bound = out(reg) _, behind = out(reg) _,
-                    top = in(reg) TOP, ones = in(reg) ONE, below = in(reg) BELOW,
+                    top = in(reg) TOP, searched = in(reg) disparities, below = in(reg) BELOW,
                     changes = const CHANGES, jumps = const JUMPS,
                     far = const offset_of!(Row, steps.far), of_more = const offset_of!(Row, more),
                     none = const NO_SUM, ones_of_halves = const ONES, options(nostack),
@@ -275,7 +278,7 @@ macro_rules! select {
 
 select! {
     /// Takes the path from right to left through so many pixels and selects their winners. 107 and 95
-    /// instructions, and 104 for a pixel; 45 and 10 a word more where lanes are no candidates.
+    /// instructions, and 105 for a pixel; 45 and 10 a word more where there are fewer candidates.
     ///
     /// # Safety
     /// There are so many pixels, one at least, and of each a column of the row's size of costs and of sums, a
@@ -283,7 +286,7 @@ select! {
     select_fours, fours
 }
 select! {
-    /// [`select_fours`] of columns of eight words. 208 and 184 instructions in all, and 106 for a pixel.
+    /// [`select_fours`] of columns of eight words. 208 and 184 instructions in all, and 107 for a pixel.
     ///
     /// # Safety
     /// As of that; a column has eight words.

@@ -10,6 +10,8 @@ pub(super) struct Lacks {
     pub over_exposed: f64,
     /// Those are black: 1 and less.
     pub under_exposed: f64,
+    /// Of each row, [`Self::untextured`].
+    rows: Vec<f64>,
 }
 
 impl Lacks {
@@ -23,11 +25,22 @@ impl Lacks {
             pixels().filter(|(_, _, pixel)| is_so(pixel.0[0])).count() as f64 / all
         };
         let sums = ChangeSums::of(picture);
+        let row = |y: u32| {
+            let shown = || (0..picture.width()).filter(|&x| is_shown(x, y));
+            shown().filter(|&x| sums.is_flat(x, y)).count() as f64 / shown().count().max(1) as f64
+        };
         Self {
             untextured: pixels().filter(|&(x, y, _)| sums.is_flat(x, y)).count() as f64 / all,
             over_exposed: share(&|pixel| pixel >= 254),
             under_exposed: share(&|pixel| pixel <= 1),
+            rows: (0..picture.height()).map(row).collect(),
         }
+    }
+
+    /// The share of this picture that lacks the texture that the other one has in the same rows.
+    pub fn lost(&self, other: &Self) -> f64 {
+        let more = self.rows.iter().zip(&other.rows).map(|(row, other)| (row - other).max(0.0));
+        more.sum::<f64>() / self.rows.len().max(1) as f64
     }
 }
 

@@ -128,6 +128,36 @@ fn what_a_picture_lacks_is_measured() {
 }
 
 #[test]
+fn a_camera_that_sees_less_than_the_other_one_is_named() {
+    let (left, right) = Scene::demo().render();
+    let height = left.height();
+    let warnings = |left: &GrayImage, right: &GrayImage| check(left, right, 64).warnings.join("; ");
+    assert_eq!(warnings(&left, &right), "");
+    // The lower half of one image hidden: behind something dark, and behind something that is not.
+    let hidden = |picture: &GrayImage, by: u8| {
+        GrayImage::from_fn(picture.width(), height, |x, y| {
+            if 2 * y < height { *picture.get_pixel(x, y) } else { image::Luma([by + (x % 7 == y % 5) as u8]) }
+        })
+    };
+    let dark = warnings(&left, &hidden(&right, 0));
+    assert!(dark.starts_with("50 % of the right image is black, where nothing can be matched; "), "{dark}");
+    let dark = warnings(&hidden(&left, 0), &right);
+    assert!(dark.starts_with("50 % of the left image is black"), "{dark}");
+    let both = warnings(&hidden(&left, 0), &hidden(&right, 0));
+    assert!(both.starts_with("50 % of the images are black"), "{both}");
+    for (left, right, side) in [(&left, &hidden(&right, 70), "right"), (&hidden(&left, 70), &right, "left")] {
+        let found = check(left, right, 64);
+        let lost = [found.lost_texture, found.lost_texture_right];
+        assert!(
+            found.warnings.join("").contains(&format!("see whether the {side} camera is covered")),
+            "{found:?}"
+        );
+        let [seen, hidden] = if side == "right" { lost } else { [lost[1], lost[0]] };
+        assert!(seen < 0.05 && (0.4..0.5).contains(&hidden), "{found:?}");
+    }
+}
+
+#[test]
 fn what_lies_before_every_search_is_said() {
     // The right image's columns stand 20 px too far to the right: what is far has negative disparities.
     let (left, right) = Scene::demo().render();

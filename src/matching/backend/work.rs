@@ -68,7 +68,8 @@ pub(in crate::matching) struct CostWork<'a> {
 /// A row's costs and the paths through it.
 ///
 /// Candidate `d` of column `x` is the right image's column `x - min_disparity - d`, where that lies left of
-/// the image its first column. Lanes beyond the disparities that are searched are closed: see [`Self::close`].
+/// the image its first column. Lanes beyond the disparities that are searched are closed
+/// ([`Self::close`]).
 pub(in crate::matching) struct PathWork<'a> {
     /// Pixels in the row.
     pub width: usize,

@@ -62,7 +62,7 @@ pub struct EvalArgs {
     depth_unit: Option<f64>,
     /// How many whole disparities are searched in scenes that are matched here, or auto; what the scene says
     /// where none is given, and auto where it says nothing
-    #[arg(long, value_name = "N", conflicts_with = "found", value_parser = disparities,
+    #[arg(long, value_name = "N|auto", conflicts_with = "found", value_parser = disparities,
         allow_negative_numbers = true)]
     disparities: Option<Disparities>,
     /// The smallest disparity searched, px

@@ -18,7 +18,7 @@ use stereopsis_host::rows::Rows;
 pub struct SearchArgs {
     /// How many whole disparities are searched: 16 to 256, at most the images' width; or auto, as many as
     /// the images show
-    #[arg(long, value_name = "N", value_parser = disparities, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N|auto", value_parser = disparities, allow_negative_numbers = true)]
     pub disparities: Disparities,
     /// The smallest disparity searched, px; 0 where none is given, or what auto finds
     #[arg(long, value_name = "M", value_parser = min_disparity, allow_negative_numbers = true)]

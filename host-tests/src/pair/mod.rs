@@ -148,8 +148,9 @@ impl PairCheck {
         let shares = [(self.lost_texture, "left", "right"), (self.lost_texture_right, "right", "left")];
         let &(share, side, other) = shares.iter().find(|(share, ..)| *share > LOST_TEXTURE)?;
         Some(format!(
-            "{:.0} % of the {side} image lacks the texture that the {other} one has in the same rows, and what \
-             is answered there is a guess; see whether the {side} camera is covered, dirty or out of focus",
+            "{:.0} % of the {side} image lacks the texture that the {other} one has in the same rows, and \
+             what is answered there is a guess; see whether the {side} camera is covered, dirty or out of \
+             focus",
             100.0 * share
         ))
     }

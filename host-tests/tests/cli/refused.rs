@@ -47,6 +47,19 @@ fn bad_images() {
 }
 
 #[test]
+fn images_without_their_options() {
+    let bench = Bench::new();
+    bench
+        .refused(&["match", "l.png", "r.png"], "'l.png' found; see --help; images follow --left and --right");
+    bench.refused(&["match", "--disparities", "64"], "--left <FILE>");
+    // No image is meant.
+    for args in [["match", "--lift"], ["doctor", "l.png"]] {
+        let said = text(&stereo(args).stderr);
+        assert!(said.contains(args[1]) && !said.contains("images follow"), "{said}");
+    }
+}
+
+#[test]
 fn bad_ranges() {
     let bench = Bench::new();
     for bad in ["0", "15", "257", "300", "-5", "65552", "64.5", "many", ""] {

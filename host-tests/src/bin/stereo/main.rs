@@ -59,7 +59,7 @@ mod view;
 mod walk;
 mod watch;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser, Subcommand};
 use failure::Failure;
 use shared::print;
@@ -245,8 +245,21 @@ fn parse(args: impl IntoIterator<Item = OsString>) -> Result<Command, Stop> {
     if args.len() < 2 {
         return Err(Stop::NoCommand);
     }
-    Cli::try_parse_from(args).map(|cli| cli.command).map_err(|error| match error.kind() {
+    Cli::try_parse_from(&args).map(|cli| cli.command).map_err(|error| match error.kind() {
         ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => Stop::Help(error.render().to_string()),
+        ErrorKind::UnknownArgument if is_image(&args, &error) => {
+            Stop::Usage(Failure::usage(usage_line(&error, COMMANDS) + "; images follow --left and --right"))
+        }
         _ => Stop::Usage(Failure::usage(usage_line(&error, COMMANDS))),
     })
+}
+
+/// Whether the argument that is unknown is a file's name, of a command that takes images by options.
+fn is_image(args: &[OsString], error: &clap::Error) -> bool {
+    let Some(ContextValue::String(unknown)) = error.get(ContextKind::InvalidArg) else { return false };
+    let cli = Cli::command();
+    let command = args.get(1).and_then(|name| cli.find_subcommand(name));
+    let takes_images =
+        |command: &clap::Command| command.get_arguments().any(|a| a.get_long() == Some("left"));
+    !unknown.starts_with('-') && command.is_some_and(takes_images)
 }

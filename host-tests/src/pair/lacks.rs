@@ -27,13 +27,14 @@ impl Lacks {
         let sums = ChangeSums::of(picture);
         let row = |y: u32| {
             let shown = || (0..picture.width()).filter(|&x| is_shown(x, y));
-            shown().filter(|&x| sums.is_flat(x, y)).count() as f64 / shown().count().max(1) as f64
+            [shown().filter(|&x| sums.is_flat(x, y)).count(), shown().count()]
         };
+        let rows: Vec<_> = (0..picture.height()).map(row).collect();
         Self {
-            untextured: pixels().filter(|&(x, y, _)| sums.is_flat(x, y)).count() as f64 / all,
+            untextured: rows.iter().map(|[flat, _]| flat).sum::<usize>() as f64 / all,
             over_exposed: share(&|pixel| pixel >= 254),
             under_exposed: share(&|pixel| pixel <= 1),
-            rows: (0..picture.height()).map(row).collect(),
+            rows: rows.iter().map(|&[flat, shown]| flat as f64 / shown.max(1) as f64).collect(),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Lines that fill no vector, and disparities that fill no group of lanes, on the two cores whose assembly no
+//! Lines that fill no vector, and disparities that fill no group of lanes, on the cores whose assembly no
 //! test of the host runs: equal to the host's to the bit, as all frames are; and frames of any size with any
 //! checks and penalties, of all methods.
 
@@ -7,7 +7,7 @@ use super::program::{Optimised, Program};
 use super::results::Ran;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
-use firmware_boards::{M55, RV32};
+use firmware_boards::{M3, M55, RV32};
 use firmware_scenes::any_frames::AnyFrames;
 use stereopsis_host::run::MethodName;
 
@@ -21,11 +21,12 @@ const HEIGHTS: [u16; 2] = [5, 21];
 
 /// Each method, program and size.
 pub fn check() -> Outcome {
-    // An RV32's code for up to 32 disparities is linked where there is room for no more: not in the frames of
-    // any size, which are searched with its code for any number.
+    // Code in words for up to 32 disparities is linked where there is room for no more: not in the frames of
+    // any size, which are searched with that for any number.
     let programs = [
         (M55, MethodName::Fast, &PROGRAMS[..]),
         (M55, MethodName::Block, &PROGRAMS[..]),
+        (M3, MethodName::Sgm, &PROGRAMS[..1]),
         (RV32, MethodName::Sgm, &PROGRAMS[..1]),
     ];
     for (board, method, programs) in programs {

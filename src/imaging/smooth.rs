@@ -30,14 +30,19 @@ pub fn smooth(rows: &[&[u8]; 5], row: usize, out: &mut [u8]) {
     // The columns at the ends.
     let last = width.saturating_sub(1);
     for x in (0..done.start).chain(done.end..count) {
-        let [before, here, after] = [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| {
-            let [above, middle, below] = near.map(|row| u32::from(row.get(x).copied().unwrap_or(0)));
-            quarters(above, middle, below)
-        });
+        let [before, here, after] = [x.saturating_sub(1), x, (x + 1).min(last)].map(|x| down(&near, x));
         if let Some(to) = out.get_mut(x) {
             *to = quarters(before, here, after) as u8;
         }
     }
+}
+
+/// Smooths down one column.
+// In flash once.
+#[cfg_attr(not(stereopsis_simd), inline(never))]
+fn down(near: &[&[u8]; 3], x: usize) -> u32 {
+    let [above, middle, below] = near.map(|row| u32::from(row.get(x).copied().unwrap_or(0)));
+    quarters(above, middle, below)
 }
 
 /// Whether four columns at a time are packed in a word; else the compiler vectorises.

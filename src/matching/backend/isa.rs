@@ -2,7 +2,6 @@
 //!
 //! Every method has a portable body. A target overrides what it does better; all give the same bits.
 
-use super::loops::fill_row;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{
@@ -11,7 +10,6 @@ use super::work::{
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::multiple_of;
-use crate::matching::memory::views::Plain;
 use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::Disparity;
 use core::ops::Range;
@@ -35,12 +33,6 @@ pub(in crate::matching) trait Isa: Copy {
             return multiple_of::<32>(disparities).min(most) & !31;
         }
         multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
-    }
-
-    /// Fills a row with a number of a byte or two.
-    #[inline(always)]
-    fn fill_row<T: Plain>(self, row: &mut [T], number: T) {
-        fill_row(row, number);
     }
 
     /// Makes the census codes of a row of both images.

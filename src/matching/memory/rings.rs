@@ -25,13 +25,13 @@ pub(in crate::matching) const fn waiting(newest: usize) -> usize {
 /// Row `slot` of a ring of rows `width` pixels wide.
 #[inline(always)]
 pub(in crate::matching) fn row<T>(ring: &[T], slot: usize, width: usize) -> &[T] {
-    part(ring, slot * width..(slot + 1) * width)
+    part(part(ring, slot * width..), ..width)
 }
 
 /// Mutable access to row `slot` of a ring of rows `width` pixels wide.
 #[inline(always)]
 pub(in crate::matching) fn row_mut<T>(ring: &mut [T], slot: usize, width: usize) -> &mut [T] {
-    part_mut(ring, slot * width..(slot + 1) * width)
+    part_mut(part_mut(ring, slot * width..), ..width)
 }
 
 /// A ring of `ROWS` rows, each `width` pixels wide.

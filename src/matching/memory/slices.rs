@@ -4,28 +4,42 @@
 //! others, for nothing here may panic.
 
 pub(in crate::matching) use crate::imaging::{chunks, chunks_mut};
-use core::slice::SliceIndex;
+use core::ops::{Bound, RangeBounds};
 
 /// A part of a slice, by a range.
 #[inline(always)]
 #[track_caller]
-pub(in crate::matching) fn part<T>(slice: &[T], range: impl SliceIndex<[T], Output = [T]>) -> &[T] {
-    let part = slice.get(range);
-    debug_assert!(part.is_some(), "a part that {} numbers do not have", slice.len());
-    part.unwrap_or_default()
+pub(in crate::matching) fn part<T>(slice: &[T], range: impl RangeBounds<usize>) -> &[T] {
+    let (begin, end) = bounds(&range, slice.len());
+    debug_assert!(begin <= end && end <= slice.len(), "a part that {} numbers do not have", slice.len());
+    let slice = slice.get(..end).unwrap_or(slice);
+    slice.get(begin.min(slice.len())..).unwrap_or_default()
 }
 
 /// Mutable access to a part of a slice, by a range.
 #[inline(always)]
 #[track_caller]
-pub(in crate::matching) fn part_mut<T>(
-    slice: &mut [T],
-    range: impl SliceIndex<[T], Output = [T]>,
-) -> &mut [T] {
-    let count = slice.len();
-    let part = slice.get_mut(range);
-    debug_assert!(part.is_some(), "a part that {count} numbers do not have");
-    part.unwrap_or_default()
+pub(in crate::matching) fn part_mut<T>(slice: &mut [T], range: impl RangeBounds<usize>) -> &mut [T] {
+    let (begin, end) = bounds(&range, slice.len());
+    debug_assert!(begin <= end && end <= slice.len(), "a part that {} numbers do not have", slice.len());
+    let end = end.min(slice.len());
+    let slice = slice.get_mut(..end).unwrap_or_default();
+    slice.get_mut(begin.min(end)..).unwrap_or_default()
+}
+
+#[inline(always)]
+fn bounds(range: &impl RangeBounds<usize>, length: usize) -> (usize, usize) {
+    let begin = match range.start_bound() {
+        Bound::Included(&begin) => begin,
+        Bound::Excluded(&begin) => begin + 1,
+        Bound::Unbounded => 0,
+    };
+    let end = match range.end_bound() {
+        Bound::Included(&end) => end + 1,
+        Bound::Excluded(&end) => end,
+        Bound::Unbounded => length,
+    };
+    (begin, end)
 }
 
 /// Mutable access to the numbers before `place` and to those from it on.
@@ -33,7 +47,7 @@ pub(in crate::matching) fn part_mut<T>(
 #[track_caller]
 pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut [T], &mut [T]) {
     debug_assert!(place <= slice.len(), "{} numbers have no place {place}", slice.len());
-    slice.split_at_mut_checked(place).unwrap_or_default()
+    slice.split_at_mut_checked(place.min(slice.len())).unwrap_or_default()
 }
 
 /// The least multiple of `TO` that is not less.

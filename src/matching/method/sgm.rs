@@ -10,7 +10,7 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
-use crate::matching::backend::loops::copy_row;
+use crate::matching::backend::loops::{copy_row, fill_bytes};
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
@@ -248,13 +248,16 @@ fn select<S: SgmParameters, const MOST: usize>(
     frame.workspace.divide(width);
     if let Some(row) = row {
         let flags = frame.flags.row_mut(row);
-        frame.backend.fill_row(flags, PixelFlags::CLEAR);
+        fill_bytes(flags, PixelFlags::CLEAR.bits());
         let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
         let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.needs_margins());
         work.workspace = workspace;
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);
         let select = Select { disparities: work.disparities, winners, unique };
-        frame.backend.sgm_select::<MOST>(&mut work, guide, select);
+        // Where no pixel has a candidate there are no costs.
+        if work.min_disparity < width {
+            frame.backend.sgm_select::<MOST>(&mut work, guide, select);
+        }
     }
     if let Some([left, _]) = lines {
         let kept = row_mut(frame.codes, bottom % guides::<S>(), width);

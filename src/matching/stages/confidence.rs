@@ -19,7 +19,7 @@
 //! No memory is added for it: [`notes`](crate::matching::memory::notes) and
 //! [`workspace`](crate::matching::memory::workspace) say where margins and confidences stand.
 
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{keep_loop, once_without_vectors};
 use crate::matching::config::Config;
 use crate::matching::memory::notes::Note;
 use crate::matching::memory::rings::{LOOK_AHEAD, waiting};
@@ -104,18 +104,25 @@ fn confidences(neighbours: &Neighbours<'_>, notes: &mut [Note], confidences: &mu
         let (Some(note), Some(here)) = (notes.get_mut(x), neighbours.answers.get(x)) else { return };
         // Beside the row there is no answer, which says nothing.
         let beside = COLUMNS.map(|off| [x.wrapping_sub(off), x + off]);
-        let s =
-            beside.as_flattened().iter().fold(0, |most, &x| apart(*here, neighbours.row.get(x)).max(most));
-        let t = neighbours.columns.iter().fold(0, |most, row| apart(*here, row.get(x)).max(most));
+        let (mut s, mut t) = (0, 0);
+        for &x in beside.as_flattened() {
+            keep_loop();
+            s = apart(*here, neighbours.row, x).max(s);
+        }
+        for row in neighbours.columns {
+            keep_loop();
+            t = apart(*here, row, x).max(t);
+        }
         let agreement = |apart: u16| AGREEMENT.saturating_sub((apart / 4).min(255) as u8);
         *confidence = note.give_back(*here) + agreement(s) + agreement(t);
     }
 }
 
-/// How far another answer is, 0 above and beside the image.
-#[inline(always)]
-fn apart(here: Disparity, other: Option<&Disparity>) -> u16 {
-    other.map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { MISSING })
+once_without_vectors! {
+    /// How far the answer in column `x` of a row is, 0 above and beside the image.
+    fn apart(here: Disparity, row: &[Disparity], x: usize) -> u16 {
+        row.get(x).map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { MISSING })
+    }
 }
 
 /// Says of a finished row which of its pixels have no answer of their own.

@@ -11,7 +11,7 @@
 //! makes few of them. The work is the same for every picture.
 
 use crate::imaging::Noise;
-use crate::matching::backend::loops::fill_bytes;
+use crate::matching::backend::loops::{fill_bytes, keep_loop};
 use crate::matching::backend::{FatteningWork, Isa, MethodParameters};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
@@ -43,7 +43,12 @@ pub(super) fn take_edges(frame: &mut Frame<'_>, lines: Option<[&Rows5<'_>; 2]>) 
             let least = least_gradient(frame.config.noise);
             frame.backend.push_edges(frame.edges, [above, line, below], least);
         }
-        None => frame.edges.iter_mut().for_each(|edges| *edges = *edges << 1 & !FatteningWork::REFUSED),
+        None => {
+            for edges in &mut *frame.edges {
+                keep_loop();
+                *edges = *edges << 1 & !FatteningWork::REFUSED;
+            }
+        }
     }
 }
 

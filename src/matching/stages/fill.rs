@@ -7,7 +7,7 @@
 //! [`PixelFlags::FILLED`], and no other answer's uncertainty looks at it: [`undo`] takes it out of the
 //! row once the row has been seen.
 
-use crate::matching::backend::loops::keep_scalar_loop;
+use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
 use crate::matching::backend::{FillWork, Isa};
 use crate::matching::memory::rings::waiting;
 use crate::matching::method::Frame;
@@ -32,32 +32,31 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
     }
 }
 
-/// Pixels that [`undo`] takes out together.
-const TOGETHER: usize = if cfg!(stereopsis_simd) { 16 } else { 4 };
-
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
 fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
-    let undo = |answer: &mut Disparity, flags: PixelFlags| {
-        *answer = Disparity::from_raw(answer.raw() | if_filled(flags) as u16);
-    };
-    let (answers, rest) = answers.as_chunks_mut::<TOGETHER>();
-    let (flags, flags_rest) = flags.as_chunks::<TOGETHER>();
-    for (answers, flags) in answers.iter_mut().zip(flags) {
+    /// The flag in each byte.
+    const FILLED: u64 = u64::MAX / 255 * PixelFlags::FILLED.bits() as u64;
+    let (groups, rest) = answers.as_chunks_mut::<8>();
+    let (flags, flags_rest) = flags.as_chunks();
+    for (answers, flags) in groups.iter_mut().zip(flags) {
         keep_scalar_loop();
-        answers.iter_mut().zip(flags).for_each(|(answer, &flags)| undo(answer, flags));
+        // Mostly none of them is.
+        if u64::from_le_bytes(flags.map(PixelFlags::bits)) & FILLED != 0 {
+            undo_each(answers, flags);
+        }
     }
-    for (answer, &flags) in rest.iter_mut().zip(flags_rest) {
-        keep_scalar_loop();
-        undo(answer, flags);
-    }
+    undo_each(rest, flags_rest);
 }
 
-/// All ones for a flag, nothing without.
-#[inline(always)]
-fn if_filled(flags: PixelFlags) -> u32 {
-    const BIT: u32 = PixelFlags::FILLED.bits().trailing_zeros();
-    0u32.wrapping_sub(u32::from(flags.bits() >> BIT & 1))
+#[inline(never)]
+fn undo_each(answers: &mut [Disparity], flags: &[PixelFlags]) {
+    for (answer, flags) in answers.iter_mut().zip(flags) {
+        keep_loop();
+        if flags.contains(PixelFlags::FILLED) {
+            *answer = Disparity::NONE;
+        }
+    }
 }
 
 #[cfg(test)]

@@ -74,15 +74,12 @@ fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [Pi
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
     let columns = usize::from(config.disparities).min(answers.len());
     let mut end = u32::from(Disparity::from_pixels(config.min_disparity).raw());
-    for (x, answer) in part_mut(answers, ..columns).iter_mut().enumerate() {
+    let refused = 0u16.wrapping_sub(u16::from(config.checks.refuse_ceiling));
+    for (answer, flags) in part_mut(answers, ..columns).iter_mut().zip(flags) {
         keep_scalar_loop();
         if u32::from(answer.raw()) == end {
-            if let Some(flags) = flags.get_mut(x) {
-                *flags = flags.union(PixelFlags::CEILING);
-            }
-            if config.checks.refuse_ceiling {
-                *answer = Disparity::NONE;
-            }
+            *flags = flags.union(PixelFlags::CEILING);
+            *answer = Disparity::from_raw(answer.raw() | refused);
         }
         end += u32::from(Disparity::ONE);
     }

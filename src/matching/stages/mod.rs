@@ -89,6 +89,7 @@ macro_rules! steps {
         }
     )*};
     ($name:ident, $method:ty, $most:literal) => {
+        #[inline(never)]
         fn $name(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
             step::<$method, $most>(frame, y, lines);
         }

@@ -14,8 +14,7 @@
 use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
-use crate::matching::backend::Isa;
-use crate::matching::backend::loops::{HAS_VECTORS, fill_bytes, keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{HAS_VECTORS, empty_row, fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
@@ -37,6 +36,8 @@ const AT_ONCE: usize = if HAS_VECTORS { 16 } else { 4 };
 const WORD: usize = size_of::<u32>();
 /// The flag of answers on a pattern, of four pixels.
 const AMBIGUOUS: u32 = PixelFlags::AMBIGUOUS.bits() as u32 * 0x0101_0101;
+/// The flag of answers that were filled in, of four pixels.
+const FILLED: u32 = PixelFlags::FILLED.bits() as u32 * 0x0101_0101;
 
 /// Whether patterns are looked for. A window's costs say which of its disparities are as good, so that its
 /// methods have no code for it. A narrower row has none.
@@ -215,7 +216,7 @@ fn mark_blocks(of: Range<usize>, blocks: &mut [[u8; WORD]]) {
 #[inline(never)]
 pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) {
-        let (first, backend) = (usize::from(frame.config.min_disparity).min(frame.width), frame.backend);
+        let first = usize::from(frame.config.min_disparity).min(frame.width);
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
@@ -233,7 +234,7 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
                     *flags = flags.union(PixelFlags::AMBIGUOUS);
                 }
             }
-            backend.fill_row(part_mut(answers, places), Disparity::NONE);
+            empty_row(part_mut(answers, places));
         });
     }
 }
@@ -255,8 +256,12 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
                     *word |= u32::from_le_bytes(*four);
                 }
             }
-            let all = words.into_iter().fold(0, |all, word| all | word).to_le_bytes();
-            if all.iter().chain(rest).any(|&bits| PixelFlags::from_bits(bits).contains(PixelFlags::FILLED)) {
+            let mut all = words.into_iter().fold(0, |all, word| all | word);
+            for &bits in rest {
+                keep_loop();
+                all |= u32::from(bits);
+            }
+            if all & FILLED != 0 {
                 for (flags, answer) in flags.iter_mut().zip(part_mut(answers, places)) {
                     keep_loop();
                     if flags.contains(PixelFlags::FILLED) {

@@ -47,14 +47,10 @@ struct Texture<'a> {
 impl Texture<'_> {
     /// Moves one row on; `line` is the new row, or `None` below the image.
     fn push<S: MethodParameters>(&mut self, line: Option<&[u8]>, checks: &Checks) {
-        let go_on = |word: &mut u16, count: &mut u8, textured: bool| {
-            *count = *count - ((*word >> (2 * S::RADIUS_Y)) as u8 & 1) + u8::from(textured);
-            *word = *word << 1 | u16::from(textured);
-        };
         let Some(line) = line else {
-            for (word, count) in self.history.iter_mut().zip(self.counts.iter_mut()) {
+            for x in 0..self.counts.len() {
                 keep_loop();
-                go_on(word, count, false);
+                self.push_at::<S>(x, false);
             }
             return;
         };
@@ -63,7 +59,7 @@ impl Texture<'_> {
         let inner = self.history.iter_mut().zip(self.counts.iter_mut()).skip(1);
         for ((word, count), (&left, &right)) in inner.zip(beside) {
             keep_scalar_loop();
-            go_on(word, count, left.abs_diff(right) >= gradient);
+            go_on::<S>(word, count, left.abs_diff(right) >= gradient);
         }
         // At the two ends the pixel itself stands for the neighbour outside.
         let last = line.len().saturating_sub(1);
@@ -71,11 +67,16 @@ impl Texture<'_> {
         // A line of one pixel has one end.
         for &(x, left, right) in ends.iter().take(line.len().min(2)) {
             keep_loop();
-            let pixels = line.get(left).zip(line.get(right));
-            let place = self.history.get_mut(x).zip(self.counts.get_mut(x));
-            if let (Some((&left, &right)), Some((word, count))) = (pixels, place) {
-                go_on(word, count, left.abs_diff(right) >= gradient);
-            }
+            let [left, right] = [left, right].map(|x| line.get(x).copied().unwrap_or(0));
+            self.push_at::<S>(x, left.abs_diff(right) >= gradient);
+        }
+    }
+
+    /// Moves one column on.
+    #[cfg_attr(not(stereopsis_simd), inline(never))]
+    fn push_at<S: MethodParameters>(&mut self, x: usize, textured: bool) {
+        if let (Some(word), Some(count)) = (self.history.get_mut(x), self.counts.get_mut(x)) {
+            go_on::<S>(word, count, textured);
         }
     }
 
@@ -83,7 +84,11 @@ impl Texture<'_> {
     fn mark<S: MethodParameters>(&self, pixels: u16, flags: &mut [PixelFlags]) {
         // Columns outside the image have no texture; left of it the place wraps.
         let column = |x: usize| self.counts.get(x).map_or(0, |&count| u16::from(count));
-        let mut count: u16 = (0..S::RADIUS_X).map(column).sum();
+        let mut count = 0;
+        for &first in part(self.counts, ..S::RADIUS_X.min(self.counts.len())) {
+            keep_loop();
+            count += u16::from(first);
+        }
         for (x, flags) in flags.iter_mut().enumerate() {
             keep_loop();
             count += column(x + S::RADIUS_X);
@@ -91,4 +96,11 @@ impl Texture<'_> {
             *flags = flags.union(PixelFlags::UNTEXTURED.when(count < pixels));
         }
     }
+}
+
+/// Moves a column on by a pixel that is textured or not.
+#[inline(always)]
+fn go_on<S: MethodParameters>(word: &mut u16, count: &mut u8, textured: bool) {
+    *count = *count - ((*word >> (2 * S::RADIUS_Y)) as u8 & 1) + u8::from(textured);
+    *word = *word << 1 | u16::from(textured);
 }

@@ -4,6 +4,7 @@
 //! Half-words hold bounds up to the number of no answer, and that bounds nothing.
 #![allow(unsafe_code)]
 
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::FatteningWork;
 use crate::matching::memory::slices::part_mut;
 use crate::units::{Disparity, PixelFlags};
@@ -27,9 +28,10 @@ pub(super) fn refuse(work: FatteningWork<'_>) {
     refuse_groups(answers, flags, edges, groups);
     let rest = part_mut(answers, done..).iter_mut().zip(part_mut(flags, done..));
     for ((answer, flags), edges) in rest.zip(part_mut(edges, done..)) {
-        let refused = *edges & FatteningWork::REFUSED != 0;
-        *flags = flags.union(PixelFlags::UNTEXTURED.when(refused && !answer.is_none()));
-        *answer = if refused { Disparity::NONE } else { *answer };
+        keep_loop();
+        if *edges & FatteningWork::REFUSED != 0 && answer.is_some() {
+            (*answer, *flags) = (Disparity::NONE, flags.union(PixelFlags::UNTEXTURED));
+        }
     }
 }
 

@@ -33,14 +33,14 @@ pub(in crate::matching::backend) fn push(edges: &mut [u8], lines: [&[u8]; 3], le
 pub(in crate::matching::backend) fn push_at(edges: &mut [u8], lines: [&[u8]; 3], x: usize, least: u16) {
     let last = edges.len().saturating_sub(1);
     if let Some(edges) = edges.get_mut(x) {
-        let is_edge = sum(lines, last.min(x + 1)).abs_diff(sum(lines, x.saturating_sub(1))) >= least;
+        let is_edge = sum(&lines, last.min(x + 1)).abs_diff(sum(&lines, x.saturating_sub(1))) >= least;
         *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(is_edge);
     }
 }
 
 /// The sum down a column, the middle line's twice.
 #[inline(never)]
-fn sum(lines: [&[u8]; 3], column: usize) -> u16 {
+fn sum(lines: &[&[u8]; 3], column: usize) -> u16 {
     let [above, line, below] = lines.map(|line| u16::from(line.get(column).copied().unwrap_or(0)));
     above + 2 * line + below
 }

@@ -7,6 +7,7 @@
 #![allow(unsafe_code)]
 
 use super::{far, splat};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::slices::part_mut;
 use crate::matching::penalties::Penalties;
 use core::arch::asm;
@@ -22,10 +23,16 @@ pub(super) struct Padded<const WORDS: usize> {
 
 impl<const WORDS: usize> Padded<WORDS> {
     /// A path at its start: `words` words of no cost.
+    // Where their number is known when compiled, the compiler's own routine would clear them, and be there
+    // for this alone.
+    #[inline(never)]
     pub fn new(words: usize, penalties: &Penalties) -> Self {
         let far = splat(far(penalties));
         let mut path = Self { before: far, words: [far; WORDS], after: far };
-        part_mut(&mut path.words, ..words).fill(0);
+        for word in part_mut(&mut path.words, ..words) {
+            keep_loop();
+            *word = 0;
+        }
         path
     }
 

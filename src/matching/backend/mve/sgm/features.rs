@@ -24,8 +24,7 @@ impl FeatureRows for HeliumRows {
     /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
     /// [`census_wide8`](crate::imaging::census_wide8).
     #[inline(always)]
-    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
+    fn looks(lines: &Rows5<'_>, width: usize, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
         let count = along.len().min(across.len()).min(census.len()).min(width);
         let [above2, above, here, below, below2] = lines.map(|line| part(line, ..width));
         // The columns that see nothing outside the line, then those at its ends: of a short line all.
@@ -104,13 +103,6 @@ impl FeatureRows for HeliumRows {
                 out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, options(nostack),
             );
         }
-    }
-
-    #[inline(always)]
-    fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
-        // Seven bits each.
-        let (a, b) = (before.wrapping_add(here) >> 1, here.wrapping_add(next) >> 1);
-        (here.min(a).min(b).wrapping_mul(2), here.max(a).max(b).wrapping_mul(2))
     }
 }
 

@@ -5,6 +5,7 @@ use super::features::FeatureRows;
 use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::views::view;
 
 /// Columns in a word.
 const COLUMNS: usize = 4;
@@ -44,24 +45,31 @@ pub(in crate::matching::backend) trait FourPixels {
 impl<F: FourPixels> FeatureRows for F {
     /// The features of as many columns as there is a place for: [`gradients`](crate::imaging::gradients) and
     /// [`census_wide8`](crate::imaging::census_wide8). Behind the line it goes on.
-    fn looks(lines: &Rows5<'_>, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-        let width = lines.iter().fold(usize::MAX, |width, line| width.min(line.len()));
-        let count = along.len().min(across.len()).min(census.len());
+    fn looks(lines: &Rows5<'_>, width: usize, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
+        let count = census.len().min(width);
         let groups = groups(width, count);
         let [above2, above, here, below, below2] = *lines;
         codes::<F>([above2, here, below2], places(census, groups));
         gradients::<F>([above, here, below], gradient, [places(along, groups), places(across, groups)]);
-        let after = REACH + groups * COLUMNS;
-        let behind = count.min(width).saturating_sub(after).div_ceil(COLUMNS);
-        for x in core::iter::once(0).chain((0..behind).map(|group| after + group * COLUMNS)) {
-            let near =
-                lines.map(|line| [0, 1, 2].map(|word| columns(part(line, ..width), x + word * COLUMNS)));
-            let [above2, above, here, below, below2] = near.each_ref().map(|near| near.as_flattened());
+        // The first columns, and those that are left at the end.
+        let mut x = 0;
+        loop {
+            keep_loop();
+            let near = lines.map(|line| near(part(line, ..width), x));
+            let [above2, above, here, below, below2] = near.each_ref().map(|near| view(near));
             let [mut code, mut one, mut other] = [[[0; COLUMNS]]; 3];
             codes::<F>([above2, here, below2], &mut code);
             gradients::<F>([above, here, below], gradient, [&mut one, &mut other]);
             for (row, [four]) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-                put(part_mut(row, x..), four);
+                keep_loop();
+                for (to, from) in part_mut(row, x..).iter_mut().zip(&four) {
+                    keep_loop();
+                    *to = *from;
+                }
+            }
+            x = if x == 0 { REACH + groups * COLUMNS } else { x + COLUMNS };
+            if x >= count {
+                break;
             }
         }
     }
@@ -81,31 +89,21 @@ impl<F: FourPixels> FeatureRows for F {
         }
     }
 
-    /// The ranges of all numbers but the two at the ends.
     #[inline(never)]
     fn range(numbers: &[u8], least: &mut [u8], greatest: &mut [u8]) {
-        let count = numbers.len().saturating_sub(2);
+        // Groups end with the last number but one.
+        let first = numbers.len().saturating_sub(2) % COLUMNS;
         let [before, here, next] =
-            [0, 1, 2].map(|from| part(numbers, from..from + count).as_chunks::<COLUMNS>());
-        let [(low, low_rest), (high, high_rest)] =
-            [least, greatest].map(|row| part_mut(row, 1..=count).as_chunks_mut::<COLUMNS>());
-        let fours = before.0.iter().zip(here.0).zip(next.0);
-        for ((low, high), ((before, here), next)) in low.iter_mut().zip(high).zip(fours) {
+            [0, 1, 2].map(|next| from(numbers, first + next).iter().copied().map(word));
+        let [least, greatest] =
+            [least, greatest].map(|row| row.get_mut(first + 1..).unwrap_or_default().as_chunks_mut().0);
+        for (((least, greatest), before), (here, next)) in
+            least.iter_mut().zip(greatest).zip(before).zip(here.zip(next))
+        {
             keep_loop();
-            let (least, greatest) = F::ranges([before, here, next].map(|four| word(*four)));
-            (*low, *high) = (least.to_le_bytes(), greatest.to_le_bytes());
+            let ranges = F::ranges([before, here, next]);
+            (*least, *greatest) = (ranges.0.to_le_bytes(), ranges.1.to_le_bytes());
         }
-        let ones = before.1.iter().zip(here.1).zip(next.1);
-        for ((low, high), ((&before, &here), &next)) in low_rest.iter_mut().zip(high_rest).zip(ones) {
-            keep_loop();
-            (*low, *high) = F::between(before, here, next);
-        }
-    }
-
-    #[inline(always)]
-    fn between(before: u8, here: u8, next: u8) -> (u8, u8) {
-        let (least, greatest) = F::ranges([before, here, next].map(u32::from));
-        (least as u8, greatest as u8)
     }
 }
 
@@ -117,9 +115,21 @@ fn groups(width: usize, count: usize) -> usize {
 }
 
 /// The places of so many groups from [`REACH`] on.
-#[inline(always)]
+#[inline(never)]
 fn places(row: &mut [u8], groups: usize) -> &mut [Group] {
     part_mut(row.get_mut(REACH..).unwrap_or_default().as_chunks_mut().0, ..groups)
+}
+
+/// The columns that the group at `x` looks at, as they stand in memory: in words, which all cores copy as
+/// such.
+#[inline(never)]
+fn near(line: &[u8], x: usize) -> [u32; NEAR / COLUMNS] {
+    let mut near = [0; NEAR / COLUMNS];
+    for (group, near) in near.iter_mut().enumerate() {
+        keep_loop();
+        *near = u32::from_ne_bytes(columns(line, x + group * COLUMNS));
+    }
+    near
 }
 
 /// The columns of a line from [`REACH`] before `place` on; those outside the line are the nearest inside.
@@ -138,19 +148,6 @@ fn columns(line: &[u8], place: usize) -> Group {
         core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0))
     };
     inside.copied().unwrap_or_else(outside)
-}
-
-/// Writes the numbers of a group for which the row has a place.
-#[inline(always)]
-fn put(row: &mut [u8], group: Group) {
-    match row.first_chunk_mut() {
-        Some(four) => *four = group,
-        // No more than three: not the compiler's routine for copies, which would be there for this alone.
-        None => row.iter_mut().zip(group).for_each(|(to, from)| {
-            keep_loop();
-            *to = from;
-        }),
-    }
 }
 
 /// The groups of a row from a column on.

@@ -60,9 +60,14 @@ mod tests {
         let mut rows = [[0; 40]; 6];
         let [along, across, census, least, greatest, halves] =
             rows.each_mut().map(|row| part_mut(row, ..width));
-        R::looks(lines, gradient, [&mut *along, &mut *across, census]);
+        R::looks(lines, width, gradient, [&mut *along, &mut *across, census]);
         R::range(across, least, greatest);
         R::halve(along, halves);
+        // Those of the first four and of the last one mean nothing.
+        for row in [least, greatest] {
+            part_mut(row, ..width.min(4)).fill(0);
+            part_mut(row, width - 1..).fill(0);
+        }
         rows
     }
 
@@ -84,7 +89,13 @@ mod tests {
             }
         }
         for (a, b) in (0..29).flat_map(|a| (0..29).map(move |b| (a, b))) {
-            assert_eq!(WordRows::between(a, b, 28 - a), PlainRows::between(a, b, 28 - a));
+            let numbers = [0, 0, 0, a, b, 28 - a, 28, a];
+            let range = |range: fn(&[u8], &mut [u8], &mut [u8])| {
+                let [mut least, mut greatest] = [[0; 8]; 2];
+                range(&numbers, &mut least, &mut greatest);
+                [least, greatest].map(|row| [row[4], row[5], row[6]])
+            };
+            assert_eq!(range(WordRows::range), range(PlainRows::range), "{a} {b}");
         }
     }
 }

@@ -78,14 +78,10 @@ impl<const W: usize> LineWindow<W> {
     #[cfg_attr(not(stereopsis_simd), inline(never))]
     pub fn around(&self, centre: usize) -> [&[u8]; N] {
         let newest = self.count.saturating_sub(1);
-        let mut rows = [&[][..]; N];
-        for (i, row) in rows.iter_mut().enumerate() {
-            let y = (centre + i).saturating_sub(N / 2).min(newest);
-            *row = self.lines.get(y % N).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[]);
-            // No instruction: so it is not unrolled, which would take flash and saves nothing.
-            core::hint::black_box(());
-        }
-        rows
+        core::array::from_fn(|i| {
+            let row = (centre + i).saturating_sub(N / 2).min(newest);
+            self.lines.get(row % N).and_then(|Line(line)| line.get(..self.width)).unwrap_or(&[])
+        })
     }
 }
 

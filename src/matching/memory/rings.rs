@@ -49,13 +49,13 @@ impl<'a, T, const ROWS: usize> Ring<'a, T, ROWS> {
 
     /// Row `y` of the frame, which the ring must still hold.
     // A stage asks for a row or two: once in flash it is smaller, and no slower to speak of.
-    #[cfg_attr(not(any(stereopsis_simd, stereopsis_vectors)), inline(never))]
+    #[cfg_attr(not(stereopsis_simd), inline(never))]
     pub(in crate::matching) fn row(&self, y: usize) -> &[T] {
         row(self.rows, y % ROWS, self.width)
     }
 
     /// Mutable access to row `y` of the frame.
-    #[cfg_attr(not(any(stereopsis_simd, stereopsis_vectors)), inline(never))]
+    #[cfg_attr(not(stereopsis_simd), inline(never))]
     pub(in crate::matching) fn row_mut(&mut self, y: usize) -> &mut [T] {
         row_mut(self.rows, y % ROWS, self.width)
     }

@@ -1,7 +1,7 @@
 //! Parts of slices whose sizes the layout of the memory promises.
 //!
-//! A part that is not there is a mistake of this crate: an assertion in debug builds, and an empty slice in
-//! others, for nothing here may panic.
+//! A part that is not there is a mistake of this crate: an assertion in debug builds, and less than was asked
+//! for in others, for nothing here may panic.
 
 pub(in crate::matching) use crate::imaging::{chunks, chunks_mut};
 use core::ops::{Bound, RangeBounds};
@@ -11,9 +11,7 @@ use core::ops::{Bound, RangeBounds};
 #[track_caller]
 pub(in crate::matching) fn part<T>(slice: &[T], range: impl RangeBounds<usize>) -> &[T] {
     let (begin, end) = bounds(&range, slice.len());
-    debug_assert!(begin <= end && end <= slice.len(), "a part that {} numbers do not have", slice.len());
-    let slice = slice.get(..end).unwrap_or(slice);
-    slice.get(begin.min(slice.len())..).unwrap_or_default()
+    slice.get(begin..end).unwrap_or_default()
 }
 
 /// Mutable access to a part of a slice, by a range.
@@ -21,33 +19,38 @@ pub(in crate::matching) fn part<T>(slice: &[T], range: impl RangeBounds<usize>) 
 #[track_caller]
 pub(in crate::matching) fn part_mut<T>(slice: &mut [T], range: impl RangeBounds<usize>) -> &mut [T] {
     let (begin, end) = bounds(&range, slice.len());
-    debug_assert!(begin <= end && end <= slice.len(), "a part that {} numbers do not have", slice.len());
-    let end = end.min(slice.len());
-    let slice = slice.get_mut(..end).unwrap_or_default();
-    slice.get_mut(begin.min(end)..).unwrap_or_default()
-}
-
-#[inline(always)]
-fn bounds(range: &impl RangeBounds<usize>, length: usize) -> (usize, usize) {
-    let begin = match range.start_bound() {
-        Bound::Included(&begin) => begin,
-        Bound::Excluded(&begin) => begin + 1,
-        Bound::Unbounded => 0,
-    };
-    let end = match range.end_bound() {
-        Bound::Included(&end) => end + 1,
-        Bound::Excluded(&end) => end,
-        Bound::Unbounded => length,
-    };
-    (begin, end)
+    slice.get_mut(begin..end).unwrap_or_default()
 }
 
 /// Mutable access to the numbers before `place` and to those from it on.
 #[inline(always)]
 #[track_caller]
 pub(in crate::matching) fn split_mut<T>(slice: &mut [T], place: usize) -> (&mut [T], &mut [T]) {
-    debug_assert!(place <= slice.len(), "{} numbers have no place {place}", slice.len());
-    slice.split_at_mut_checked(place.min(slice.len())).unwrap_or_default()
+    let (_, place) = bounds(&..place, slice.len());
+    slice.split_at_mut_checked(place).unwrap_or_default()
+}
+
+/// Where a range of so many numbers begins and ends. On microcontrollers both are cut to what there is:
+/// fewer instructions than an empty part in place of one that is not there.
+#[inline(always)]
+#[track_caller]
+fn bounds(range: &impl RangeBounds<usize>, count: usize) -> (usize, usize) {
+    let begin = match range.start_bound() {
+        Bound::Included(&begin) => begin,
+        Bound::Excluded(&before) => before + 1,
+        Bound::Unbounded => 0,
+    };
+    let end = match range.end_bound() {
+        Bound::Included(&last) => last + 1,
+        Bound::Excluded(&end) => end,
+        Bound::Unbounded => count,
+    };
+    debug_assert!(begin <= end && end <= count, "{count} numbers have no part {begin}..{end}");
+    if cfg!(stereopsis_simd) {
+        return (begin, end);
+    }
+    let end = end.min(count);
+    (begin.min(end), end)
 }
 
 /// The least multiple of `TO` that is not less.

@@ -1,6 +1,7 @@
 //! The census of `fast`, [`crate::imaging::census_plus4`], and of `block`, [`crate::imaging::census_ring8`].
 #![allow(unsafe_code)]
 
+use super::rows::fill;
 use crate::matching::memory::Rows5;
 use core::arch::asm;
 
@@ -17,8 +18,8 @@ pub fn census_plus4(rows: &Rows5<'_>, room: &mut [u8], out: &mut [u8]) {
     let Some((before, more)) = room.split_at_mut_checked(REACH) else { return };
     let Some((inside, after)) = more.split_at_mut_checked(width) else { return };
     let Some(after) = after.first_chunk_mut::<REACH>() else { return };
-    before.fill(centre.first().copied().unwrap_or(0));
-    after.fill(centre.last().copied().unwrap_or(0));
+    fill(before, centre.first().copied().unwrap_or(0));
+    fill(after, centre.last().copied().unwrap_or(0));
     for (inside, &pixel) in inside.iter_mut().zip(centre) {
         *inside = pixel;
     }

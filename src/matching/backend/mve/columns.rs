@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use super::rows::fill;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
 use core::arch::asm;
 
@@ -107,7 +108,7 @@ fn codes<'a>(
     room: &'a mut [u8],
 ) -> Codes<'a> {
     let Some((left, from)) = row.and_then(|row| row.split_at_checked(width)) else {
-        room.fill(0);
+        fill(room, 0);
         return Codes { left: room, right: room };
     };
     let right = with_more_before(width, min_disparity, stride, room, |right| {
@@ -133,7 +134,7 @@ fn with_more_before(
     // One more is put, and repeated.
     put(part_mut(room, outside..));
     let first = room.get(outside).copied().unwrap_or(0);
-    part_mut(room, ..outside).fill(first);
+    fill(part_mut(room, ..outside), first);
     room
 }
 

@@ -1,28 +1,60 @@
-//! Edges of a line, pixel by pixel: the compiler makes vectors of it.
+//! Edges of a line, eight pixels at a time.
+#![allow(unsafe_code)]
 
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::edges::push_at;
 use crate::matching::backend::work::FatteningWork;
+use core::arch::asm;
 
 /// [`Isa::push_edges`](crate::matching::backend::Isa::push_edges).
 #[inline(never)]
 pub(super) fn push(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
-    let last = edges.len().saturating_sub(1);
-    let sum = |[above, line, below]: [u8; 3]| u16::from(above) + 2 * u16::from(line) + u16::from(below);
-    let at = |x: usize| sum(lines.map(|line| line.get(x).copied().unwrap_or(0)));
-    let push = |edges: &mut u8, before: u16, after: u16| {
-        *edges = (*edges << 1 & !FatteningWork::REFUSED) | u8::from(after.abs_diff(before) >= least);
-    };
-    let [above, line, below] = lines;
-    let columns =
-        above.iter().zip(line).zip(below).map(|((&above, &line), &below)| sum([above, line, below]));
-    let inner = edges.iter_mut().skip(1).take(last.saturating_sub(1));
-    for (edges, (before, after)) in inner.zip(columns.clone().zip(columns.skip(2))) {
-        push(edges, before, after);
-    }
-    if let Some(edges) = edges.first_mut() {
-        push(edges, at(0), at(1.min(last)));
-    }
+    push_inner(edges, &lines, least);
     // A line of one pixel has one end.
-    if let Some(edges) = edges.get_mut(1..).and_then(<[u8]>::last_mut) {
-        push(edges, at(last - 1), at(last));
+    for x in [0, edges.len().wrapping_sub(1)].into_iter().take(edges.len()) {
+        keep_loop();
+        push_at(edges, lines, x, least);
+    }
+}
+
+/// All but the columns at the ends: 23 instructions for eight pixels.
+#[inline(never)]
+fn push_inner(edges: &mut [u8], [above, line, below]: &[&[u8]; 3], least: u16) {
+    let count = edges.len().saturating_sub(2);
+    if count == 0 || [above, line, below].iter().any(|line| line.len() < edges.len()) {
+        return;
+    }
+    // SAFETY: `count` edges from the second on are read and written, and of each line the columns before and
+    // after them are read: the loop is one for so many lanes of half-words.
+    unsafe {
+        asm!(
+            "dlstp.16 lr, {count}",
+            "2:",
+            "vldrb.u16 q0, [r0, #2]",
+            "vldrb.u16 q1, [r1, #2]",
+            "vldrb.u16 q2, [r2, #2]",
+            "vadd.i16 q0, q0, q1",
+            "vadd.i16 q1, q1, q2",
+            "vadd.i16 q0, q0, q1",
+            "vldrb.u16 q1, [r0], #8",
+            "vldrb.u16 q2, [r1], #8",
+            "vldrb.u16 q3, [r2], #8",
+            "vadd.i16 q1, q1, q2",
+            "vadd.i16 q2, q2, q3",
+            "vadd.i16 q1, q1, q2",
+            "vabd.u16 q0, q0, q1",
+            "vldrb.u16 q1, [r3]",
+            "vshl.i16 q1, q1, #1",
+            "vbic.i16 q1, #{refused}",
+            "vpt.u16 cs, q0, {least}",
+            "vorrt.i16 q1, #1",
+            "vstrb.16 q1, [r3], #8",
+            "letp lr, 2b",
+            count = in(reg) count, least = in(reg) u32::from(least),
+            refused = const FatteningWork::REFUSED,
+            inout("r0") above.as_ptr() => _, inout("r1") line.as_ptr() => _, inout("r2") below.as_ptr() => _,
+            inout("r3") edges.as_mut_ptr().add(1) => _,
+            out("lr") _, out("q0") _, out("q1") _, out("q2") _, out("q3") _, options(nostack),
+        );
     }
 }

@@ -10,16 +10,15 @@
 use crate::matching::backend::work::FatteningWork;
 use crate::units::{Disparity, PixelFlags};
 use core::arch::asm;
+use core::mem::MaybeUninit;
 
 /// Pixels in a vector.
 const LANES: usize = 8;
 /// What both directions need.
 #[repr(C)]
 struct Room {
-    /// Bounds, with none before and after.
-    bounds: [[u16; LANES]; 3],
-    /// Edges, likewise.
-    edges: [[u16; LANES]; 3],
+    /// Bounds, with none before and after, and edges, likewise.
+    beside: [MaybeUninit<[u16; LANES]>; 6],
     /// What a bound is raised by from one vector into the next.
     ramp: [u16; LANES],
     tolerance: [u16; LANES],
@@ -30,7 +29,27 @@ impl Room {
     fn new(slope: u32, lanes: [u32; LANES]) -> Self {
         let ramp = lanes.map(|lanes| raised(slope, lanes) as u16);
         let tolerance = [FatteningWork::TOLERANCE; LANES];
-        Self { bounds: [[u16::MAX; LANES]; 3], edges: [[0; LANES]; 3], ramp, tolerance }
+        Self { beside: [MaybeUninit::uninit(); 6], ramp, tolerance }
+    }
+
+    /// No bounds and no edges before the first pixels. The compiler would call its own routines for it, which
+    /// would be there for this alone.
+    #[inline(never)]
+    fn begin(&mut self) {
+        // SAFETY: six vectors are written, which are the room's first.
+        unsafe {
+            asm!(
+                "vmov.i8 q0, #255",
+                "vstrh.16 q0, [{room}], #16",
+                "vstrh.16 q0, [{room}], #16",
+                "vstrh.16 q0, [{room}], #16",
+                "vmov.i8 q0, #0",
+                "vstrh.16 q0, [{room}], #16",
+                "vstrh.16 q0, [{room}], #16",
+                "vstrh.16 q0, [{room}]",
+                room = inout(reg) core::ptr::from_mut(self) => _, out("q0") _, options(nostack),
+            );
+        }
     }
 
     /// The middle of the bounds, by a pointer to all of it: that of the edges is 48 bytes further, the ramp
@@ -97,6 +116,7 @@ fn mark_to_right(answers: &[Disparity], edges: &mut [u8], up: u32, slope: u32) {
         return;
     }
     let mut room = Room::new(slope, [1, 2, 3, 4, 5, 6, 7, 8]);
+    room.begin();
     // SAFETY: `count` answers are read, and as many edges read and written: the loop is one for so many lanes
     // of half-words. The room is read and written up to eight bytes beside the middle of its bounds and of
     // its edges.
@@ -153,6 +173,7 @@ fn refuse_to_left(answers: &mut [Disparity], flags: &mut [PixelFlags], edges: &[
     let groups = count.div_ceil(LANES);
     let last = (groups - 1) * LANES;
     let mut room = Room::new(slope, [8, 7, 6, 5, 4, 3, 2, 1]);
+    room.begin();
     // SAFETY: of each row `count` numbers are read, and of the first two written: of the last vector as many
     // lanes as are left. The room is read and written up to eight bytes beside the middle of its bounds and
     // of its edges.

@@ -59,6 +59,7 @@ use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::Disparity;
 use core::ops::Range;
+use rows::fill;
 use sides::{complete, spread};
 use windows::{BESIDE_SUMS, Windows, best_of_the_rest};
 
@@ -234,7 +235,7 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
             *sums = first;
         }
         _ => {
-            inside.fill(0);
+            fill(inside, 0);
             for column in columns {
                 for (sum, column) in inside.iter_mut().zip(column) {
                     *sum = sum.wrapping_add(column >> S::COLUMN_SHIFT);

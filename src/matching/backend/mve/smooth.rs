@@ -5,9 +5,11 @@ use super::LANES;
 use super::rows::{copy, fill};
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS};
 use crate::matching::config::Checks;
-use crate::matching::memory::slices::split_mut;
+use crate::matching::memory::slices::{part_mut, split_mut};
+use crate::matching::memory::views::view_mut;
 use crate::units::Disparity;
 use core::arch::asm;
+use core::mem::MaybeUninit;
 
 /// How far the answers around a pixel reach, to each side.
 const REACH: usize = MARGIN / 2;
@@ -149,7 +151,7 @@ fn pairs<const RADIUS: usize>(answers: &mut [Disparity], room: &mut [u16], step:
 }
 
 /// Bytes from which a vector is read again, its lanes moved up or down, and zeros moved in.
-type Shift = [u8; 3 * LANES];
+type Shift = [[u8; LANES]; 3];
 
 /// The numbers of the lanes from 1 on.
 static LANE: [u8; LANES] = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16];
@@ -164,21 +166,24 @@ static BACK: [u8; LANES] = [16, 15, 14, 13, 12, 11, 10, 9, 8, 7, 6, 5, 4, 3, 2, 
 #[inline(never)]
 fn count(begins: &mut [u16], lengths: &mut [u8], width: usize) {
     let groups = width.div_ceil(LANES);
-    let bytes = width..groups * LANES;
-    let mut shift: Shift = [0; 3 * LANES];
+    let mut shift = MaybeUninit::<Shift>::uninit();
     if groups == 0 || 2 * begins.len() < groups * LANES + 1 || lengths.len() < width {
         return;
     }
-    let begins = begins.as_mut_ptr().cast::<u8>();
+    let begins = view_mut::<u16, u8>(begins);
+    // What lies outside is no surface, on both sides.
+    fill(part_mut(begins, width..groups * LANES), u8::MAX);
+    let [first, .., last] = part_mut(begins, ..=groups * LANES) else { return };
+    (*first, *last) = (u8::MAX, 0);
+    let (begins, shift) = (begins.as_mut_ptr(), shift.as_mut_ptr().cast::<u8>());
     // SAFETY: `begins` has a byte for each lane of the groups and one more, as asked for above, and `lengths`
     // one for each of `width`: the last stores are of the lanes up to there. `shift` is read up to eight
-    // bytes before and after its middle.
+    // bytes before and after its middle, and written before that: zeros, and the middle in each round.
     unsafe {
-        // What lies outside is no surface, on both sides.
-        begins.write(u8::MAX);
-        begins.add(bytes.start).write_bytes(u8::MAX, bytes.len());
-        begins.add(bytes.end).write(0);
         asm!(
+            "vmov.i8 q1, #0",
+            "vstrb.8 q1, [{shift}, #-16]",
+            "vstrb.8 q1, [{shift}, #16]",
             "vldrb.u8 q3, [{lane}]",
             "dls lr, {groups}",
             "2:",
@@ -196,7 +201,7 @@ fn count(begins: &mut [u16], lengths: &mut [u8], width: usize) {
             "vstrb.8 q1, [{begins}], #16",
             "le lr, 2b",
             groups = in(reg) groups, lane = in(reg) LANE.as_ptr(), begins = inout(reg) begins => _,
-            shift = in(reg) shift.as_mut_ptr().add(LANES), carry = inout(reg) 0 => _,
+            shift = in(reg) shift.add(LANES), carry = inout(reg) 0 => _,
             out("lr") _, out("q0") _, out("q1") _, out("q3") _, options(nostack),
         );
         let last = (groups - 1) * LANES;
@@ -227,7 +232,7 @@ fn count(begins: &mut [u16], lengths: &mut [u8], width: usize) {
             "le lr, 2b",
             groups = in(reg) groups, back = in(reg) BACK.as_ptr(), begins = inout(reg) begins.add(last) => _,
             lengths = inout(reg) lengths.as_mut_ptr().add(last) => _, lanes = inout(reg) width - last => _,
-            shift = in(reg) shift.as_mut_ptr().add(LANES), carry = inout(reg) 0 => _, one = in(reg) 1,
+            shift = in(reg) shift.add(LANES), carry = inout(reg) 0 => _, one = in(reg) 1,
             out("lr") _, out("q0") _, out("q1") _, out("q3") _, out("q4") _, options(nostack),
         );
     }

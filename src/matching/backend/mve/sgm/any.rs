@@ -8,6 +8,7 @@ use super::any_paths::{Leftward, walk_down, walk_left, walk_right};
 use super::changes::changes;
 use super::{down, leftward, rightward};
 use crate::matching::backend::mve::columns::BITS;
+use crate::matching::backend::mve::rows::fill;
 use crate::matching::backend::mve::sides::complete;
 use crate::matching::backend::mve::windows::best_of_the_rest;
 use crate::matching::backend::parameters::SgmParameters;
@@ -100,7 +101,7 @@ pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'
     let (along, rest) = split_mut(view_mut::<u32, u16>(workspace), width + 1);
     // A path, with a vector before and after that no path comes from.
     let Some(room) = view_mut::<u16, u8>(rest).get_mut(..stride + 2 * LANES) else { return };
-    room.fill(u8::MAX);
+    fill(room, u8::MAX);
     let down = part_mut(view_mut::<u8, u16>(winners.bytes()), ..width);
     changes(guide.here, guide.above.unwrap_or(guide.here), work.penalties, down);
     down::go(work, guide, down, stride, |run| {
@@ -109,14 +110,14 @@ pub(super) fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'
     });
 
     changes(guide.here.get(1..).unwrap_or_default(), guide.here, work.penalties, part_mut(along, 1..width));
-    part_mut(room, LANES..LANES + stride).fill(0);
+    fill(part_mut(room, LANES..LANES + stride), 0);
     let mut least = 0;
     rightward::go(work, guide.row, along, stride, |run| {
         // SAFETY: as above.
         unsafe { walk_right(run, groups, &mut least, room.as_mut_ptr().add(LANES)) }
     });
 
-    part_mut(room, LANES..LANES + stride).fill(0);
+    fill(part_mut(room, LANES..LANES + stride), 0);
     select_leftward(work, begin, along, room, winners.bytes(), unique);
     let rows = winners.rows(begin);
     let rows = [rows.below, rows.costs, rows.above, rows.disparities];

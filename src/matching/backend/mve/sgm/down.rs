@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::LANES;
+use crate::matching::backend::mve::rows::fill;
 use crate::matching::backend::work::{Guide, PathWork};
 use crate::matching::memory::layout::COLUMNS_OFF;
 use core::arch::asm;
@@ -74,7 +75,7 @@ pub(super) fn go(
     }
     // In the first row nothing is above.
     if guide.above.is_none() {
-        work.top.fill(0);
+        fill(work.top, 0);
     }
     let ring = Ring::new(width, guide.row);
     let last = width - 1;

@@ -3,8 +3,10 @@
 
 use super::super::rows::fill;
 use crate::matching::backend::portable::sgm::features::FeatureRows;
+use crate::matching::backend::portable::sgm::features_by_four::near;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::{part, part_mut};
+use crate::matching::memory::views::view;
 use core::arch::asm;
 
 /// Columns to each side that a code looks at.
@@ -25,25 +27,21 @@ impl FeatureRows for HeliumRows {
     /// [`census_wide8`](crate::imaging::census_wide8).
     #[inline(always)]
     fn looks(lines: &Rows5<'_>, width: usize, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
-        let count = along.len().min(across.len()).min(census.len()).min(width);
-        let [above2, above, here, below, below2] = lines.map(|line| part(line, ..width));
+        let count = census.len().min(width);
+        let [above2, above, here, below, below2] = *lines;
         // The columns that see nothing outside the line, then those at its ends: of a short line all.
         let inner = REACH..count.min(width.saturating_sub(REACH)).max(REACH);
         codes([above2, here, below2], census.get_mut(inner.clone()).unwrap_or_default());
         let places = [&mut *along, &mut *across].map(|row| row.get_mut(inner.clone()).unwrap_or_default());
-        gradients(
-            [above, here, below].map(|line| line.get(REACH - 1..).unwrap_or_default()),
-            gradient,
-            places,
-        );
+        gradients([above, here, below], gradient, places);
         let (mut x, step) = (0, if width < NEAR { REACH } else { width - REACH });
         while x < count {
-            let near = [above2, above, here, below, below2].map(|line| near(line, x));
-            let [above2, above, here, below, below2] = &near;
+            let near = lines.map(|line| near(part(line, ..width), x));
+            let [above2, above, here, below, below2] = near.each_ref().map(|near| view(near));
             let places = x..count.min(x + REACH);
-            codes([above2, here, below2].map(<[u8; NEAR]>::as_slice), part_mut(census, places.clone()));
-            let near = [above, here, below].map(|near| part(near, REACH - 1..));
-            gradients(near, gradient, [&mut *along, &mut *across].map(|row| part_mut(row, places.clone())));
+            codes([above2, here, below2], part_mut(census, places.clone()));
+            let places = [&mut *along, &mut *across].map(|row| part_mut(row, places.clone()));
+            gradients([above, here, below], gradient, places);
             x += step;
         }
     }
@@ -106,25 +104,6 @@ impl FeatureRows for HeliumRows {
     }
 }
 
-/// What the [`REACH`] columns from `x` on see of a line, which are those at an end of it if it has [`NEAR`].
-/// Columns outside it are the nearest inside.
-fn near(line: &[u8], x: usize) -> [u8; NEAR] {
-    const INSIDE: usize = NEAR - REACH;
-    let [first, last] = [line.first(), line.last()].map(|end| [end.copied().unwrap_or(0); NEAR]);
-    if line.len() < NEAR {
-        let last = line.len().saturating_sub(1);
-        let column = |i: usize| (x + i).saturating_sub(REACH).min(last);
-        return core::array::from_fn(|i| line.get(column(i)).copied().unwrap_or(0));
-    }
-    let mut near = if x == 0 { first } else { last };
-    let inside = if x == 0 { near.last_chunk_mut::<INSIDE>() } else { near.first_chunk_mut() };
-    let of_line = if x == 0 { line.first_chunk() } else { line.last_chunk() };
-    if let (Some(inside), Some(of_line)) = (inside, of_line) {
-        *inside = *of_line;
-    }
-    near
-}
-
 /// The codes of as many columns as there are places, from the rows two above, here, and two below, each from
 /// [`REACH`] columns before the first on: 28 instructions for 16 pixels.
 #[inline(never)]
@@ -174,19 +153,19 @@ fn codes(rows: [&[u8]; 3], out: &mut [u8]) {
 }
 
 /// The gradients along the line and across it, cut off at `most` to each side, plus `most`, likewise, from
-/// the rows above, here and below, each from a column before the first on: 29 instructions for eight pixels.
+/// the rows above, here and below: 29 instructions for eight pixels.
 #[inline(never)]
 fn gradients(rows: [&[u8]; 3], most: u8, [along, across]: [&mut [u8]; 2]) {
     /// More than any sum.
     const BIAS: u32 = 1 << 10;
     let count = along.len();
-    if count == 0 || across.len() < count || rows.iter().any(|row| row.len() < count + 2) {
+    if count == 0 || across.len() < count || rows.iter().any(|row| row.len() < count + REACH + 1) {
         return;
     }
-    let [above, here, below] = rows.map(<[u8]>::as_ptr);
+    let [above, here, below] = rows.map(|row| row.as_ptr().wrapping_add(REACH - 1));
     let most = u32::from(most);
-    // SAFETY: `count` bytes of `along` and of `across` are written, and two more of each row are read: the
-    // loop is one for so many lanes of half-words.
+    // SAFETY: `count` bytes of `along` and of `across` are written, and of each row as many and one more on
+    // both sides are read: the loop is one for so many lanes of half-words.
     unsafe {
         asm!(
             "vdup.16 q7, {greatest}",

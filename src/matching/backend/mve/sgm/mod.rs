@@ -28,6 +28,7 @@ mod rightward;
 mod room;
 
 use super::LANES;
+use crate::matching::backend::mve::rows::fill;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features as portable;
 use crate::matching::backend::work::{CostWork, EdgeWork, Guide, PathWork};
@@ -75,7 +76,7 @@ pub(super) fn select<const MOST: usize>(work: &mut PathWork<'_>, guide: Guide<'_
 #[inline(never)]
 fn enter<S: SgmParameters, const STRIDE: usize>(work: &mut PathWork<'_>, row: CostWork<'_>) {
     if row.is_first {
-        work.costs.fill(0);
+        fill(work.costs, 0);
     }
     let Some(features) = portable::of::<HeliumRows, S>(work, row.lines, row.workspace) else { return };
     if STRIDE > 0 {

@@ -5,6 +5,8 @@
 //!          the disparities            far    the path        far              the sums       a byte
 //! ```
 
+use crate::matching::backend::mve::rows::fill;
+
 /// Bytes between two of them; the last one before each is beside its first lane.
 const GAP: usize = 16;
 /// How far the [middle](Room::middle) is behind the path's first byte.
@@ -22,7 +24,7 @@ impl<'a, const STRIDE: usize> Room<'a, STRIDE> {
     /// With no path; none if there is too little room.
     pub fn new(room: &'a mut [u8]) -> Option<Self> {
         let room = room.get_mut(..3 * STRIDE + 2 * GAP + 1)?;
-        room.fill(u8::MAX);
+        fill(room, u8::MAX);
         for (disparity, place) in (0..STRIDE as u8).rev().zip(room.iter_mut()) {
             *place = disparity;
         }
@@ -32,7 +34,7 @@ impl<'a, const STRIDE: usize> Room<'a, STRIDE> {
     /// Makes the path one that comes from nowhere: no disparity costs anything.
     pub fn begin(&mut self) {
         if let Some(path) = self.0.get_mut(STRIDE + GAP..2 * STRIDE + GAP) {
-            path.fill(0);
+            fill(path, 0);
         }
     }
 

@@ -123,7 +123,7 @@ fn places(row: &mut [u8], groups: usize) -> &mut [Group] {
 /// The columns that the group at `x` looks at, as they stand in memory: in words, which all cores copy as
 /// such.
 #[inline(never)]
-fn near(line: &[u8], x: usize) -> [u32; NEAR / COLUMNS] {
+pub(in crate::matching::backend) fn near(line: &[u8], x: usize) -> [u32; NEAR / COLUMNS] {
     let mut near = [0; NEAR / COLUMNS];
     for (group, near) in near.iter_mut().enumerate() {
         keep_loop();

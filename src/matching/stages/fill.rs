@@ -35,12 +35,15 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
 fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
+    if cfg!(any(stereopsis_simd, stereopsis_vectors)) {
+        return undo_each(answers, flags);
+    }
     /// The flag in each byte.
     const FILLED: u64 = u64::MAX / 255 * PixelFlags::FILLED.bits() as u64;
     let (groups, rest) = answers.as_chunks_mut::<8>();
     let (flags, flags_rest) = flags.as_chunks();
     for (answers, flags) in groups.iter_mut().zip(flags) {
-        keep_scalar_loop();
+        keep_loop();
         // Mostly none of them is.
         if u64::from_le_bytes(flags.map(PixelFlags::bits)) & FILLED != 0 {
             undo_each(answers, flags);
@@ -49,13 +52,15 @@ fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
     undo_each(rest, flags_rest);
 }
 
+/// Where there are vectors, pixels side by side.
 #[inline(never)]
 fn undo_each(answers: &mut [Disparity], flags: &[PixelFlags]) {
+    const BIT: u32 = PixelFlags::FILLED.bits().trailing_zeros();
     for (answer, flags) in answers.iter_mut().zip(flags) {
-        keep_loop();
-        if flags.contains(PixelFlags::FILLED) {
-            *answer = Disparity::NONE;
-        }
+        keep_scalar_loop();
+        // All ones for a flag, nothing without.
+        let filled = 0u16.wrapping_sub(u16::from(flags.bits() >> BIT & 1));
+        *answer = Disparity::from_raw(answer.raw() | filled);
     }
 }
 

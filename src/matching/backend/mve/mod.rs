@@ -224,24 +224,21 @@ fn winners<S: WindowParameters, const STRIDE: usize>(
     let columns = chunks(leaves, stride).take(2 * S::RADIUS_X + 1);
     let mut windows = Windows::<STRIDE>::new(stride, leaves, enters, room);
     let inside = windows.sums();
-    match inside.first_chunk_mut::<STRIDE>() {
-        Some(sums) if STRIDE > 0 => {
-            let mut first = [0u8; STRIDE];
-            for column in columns.filter_map(|column| column.first_chunk::<STRIDE>()) {
-                for lane in 0..STRIDE {
-                    first[lane] = first[lane].wrapping_add(column[lane] >> S::COLUMN_SHIFT);
-                }
-            }
-            *sums = first;
-        }
-        _ => {
-            fill(inside, 0);
-            for column in columns {
-                for (sum, column) in inside.iter_mut().zip(column) {
-                    *sum = sum.wrapping_add(column >> S::COLUMN_SHIFT);
-                }
+    if STRIDE == 0 {
+        fill(inside, 0);
+        for column in columns {
+            for (sum, column) in inside.iter_mut().zip(column) {
+                *sum = sum.wrapping_add(column >> S::COLUMN_SHIFT);
             }
         }
+    } else if let Some(sums) = inside.first_chunk_mut::<STRIDE>() {
+        let mut first = [0u8; STRIDE];
+        for column in columns.filter_map(|column| column.first_chunk::<STRIDE>()) {
+            for lane in 0..STRIDE {
+                first[lane] = first[lane].wrapping_add(column[lane] >> S::COLUMN_SHIFT);
+            }
+        }
+        *sums = first;
     }
     let is_checked = unique.is_asked();
     let mut check = unique.checks_from(begin);

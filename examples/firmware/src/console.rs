@@ -7,16 +7,6 @@ pub struct Console(Option<HostFile>);
 
 /// Digits of the largest number.
 const DIGITS: usize = 20;
-/// What a one is worth in each of them.
-const POWERS: &[u64; DIGITS] = &{
-    let mut powers = [1; DIGITS];
-    let mut digit = DIGITS - 1;
-    while digit > 0 {
-        powers[digit - 1] = powers[digit] * 10;
-        digit -= 1;
-    }
-    powers
-};
 
 impl Console {
     /// The console; one that swallows everything when the host has none.
@@ -26,18 +16,19 @@ impl Console {
 
     /// A line: the name, a blank, the number.
     pub fn figure(&mut self, name: &str, number: u64) {
-        // Powers of ten are taken away: a 32-bit core's division of 64 bits is a kilobyte of flash.
-        let mut digits = [b'0'; DIGITS];
-        let mut rest = number;
-        for (digit, &power) in digits.iter_mut().zip(POWERS) {
-            // No more than nine times: of a loop without an end the compiler makes a division again.
-            for _ in 0..9 {
-                if rest >= power {
-                    (rest, *digit) = (rest - power, *digit + 1);
-                }
-            }
+        // Doubled with every bit, digit by digit: a 32-bit core's division of 64 bits is a kilobyte of flash.
+        let (mut digits, mut rest) = ([b'0'; DIGITS], number);
+        for _ in 0..u64::BITS {
+            keep_loop();
+            // Of a number of digits that the compiler does not know: else it unrolls all twenty.
+            double(core::hint::black_box(digits.as_mut_slice()), (rest >> (u64::BITS - 1)) as u8);
+            rest <<= 1;
         }
-        let zeros = digits.iter().take(DIGITS - 1).take_while(|&&digit| digit == b'0').count();
+        let mut zeros = 0;
+        while zeros < DIGITS - 1 && digits.get(zeros) == Some(&b'0') {
+            keep_loop();
+            zeros += 1;
+        }
         self.text(name);
         self.text(" ");
         self.bytes(digits.get(zeros..).unwrap_or_default());
@@ -55,4 +46,22 @@ impl Console {
             let _ = out.write(bytes);
         }
     }
+}
+
+/// Doubles a decimal number, and adds to its last digit.
+#[inline(never)]
+fn double(digits: &mut [u8], more: u8) {
+    let mut carry = more;
+    for digit in digits.iter_mut().rev() {
+        keep_loop();
+        let twice = 2 * (*digit - b'0') + carry;
+        carry = u8::from(twice >= 10);
+        *digit = b'0' + twice - 10 * carry;
+    }
+}
+
+/// In the body of a loop: no instruction, so that the loop is not unrolled, which would take flash.
+#[inline(always)]
+fn keep_loop() {
+    core::hint::black_box(());
 }

@@ -2,6 +2,7 @@
 //!
 //! Every method has a portable body. A target overrides what it does better; all give the same bits.
 
+use super::loops::fill_bytes;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{
@@ -10,6 +11,7 @@ use super::work::{
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::multiple_of;
+use crate::matching::memory::views::Plain;
 use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::Disparity;
 use core::ops::Range;
@@ -33,6 +35,12 @@ pub(in crate::matching) trait Isa: Copy {
             return multiple_of::<32>(disparities).min(most) & !31;
         }
         multiple_of::<STEP>(disparities).min(most) & !(STEP - 1)
+    }
+
+    /// Makes every byte of a row's numbers the same one.
+    #[inline(always)]
+    fn fill_bytes<T: Plain>(self, row: &mut [T], byte: u8) {
+        fill_bytes(row, byte);
     }
 
     /// Makes the census codes of a row of both images.

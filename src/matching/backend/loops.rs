@@ -74,11 +74,14 @@ pub(in crate::matching) fn fill_bytes<T: Plain>(row: &mut [T], byte: u8) {
     fill_all(view_mut(row), byte);
 }
 
+/// Each byte of no answer.
+pub(in crate::matching) const NO_ANSWER: u8 = Disparity::NONE.raw().to_le_bytes()[0];
+const _: () = assert!(Disparity::NONE.raw() == u16::from_le_bytes([NO_ANSWER; 2]));
+
 /// Leaves no answer in a row.
 #[inline(always)]
 pub(in crate::matching) fn empty_row(answers: &mut [Disparity]) {
-    const { assert!(Disparity::NONE.raw() == u16::from_le_bytes([u8::MAX; 2])) };
-    fill_bytes(answers, u8::MAX);
+    fill_bytes(answers, NO_ANSWER);
 }
 
 once_without_vectors! {

@@ -10,7 +10,7 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
-use crate::matching::backend::loops::{copy_row, fill_bytes};
+use crate::matching::backend::loops::copy_row;
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
@@ -248,7 +248,7 @@ fn select<S: SgmParameters, const MOST: usize>(
     frame.workspace.divide(width);
     if let Some(row) = row {
         let flags = frame.flags.row_mut(row);
-        fill_bytes(flags, PixelFlags::CLEAR.bits());
+        frame.backend.fill_bytes(flags, PixelFlags::CLEAR.bits());
         let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
         let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.needs_margins());
         work.workspace = workspace;

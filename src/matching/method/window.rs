@@ -3,7 +3,6 @@
 use super::denoise::denoise;
 use super::{Costs, Frame, Method};
 use crate::imaging::Noise;
-use crate::matching::backend::loops::fill_bytes;
 use crate::matching::backend::{
     CODES_SHARE_A_BYTE, CensusWork, Isa, MethodParameters, TABLE_WORDS, TABLE_WORDS_OF_EIGHT,
     WindowParameters, WindowWork,
@@ -158,7 +157,7 @@ fn select<S: WindowParameters, const MOST: usize>(
     let (workspace, select) = match row {
         Some(row) => {
             let flags = frame.flags.row_mut(row);
-            fill_bytes(flags, PixelFlags::CLEAR.bits());
+            frame.backend.fill_bytes(flags, PixelFlags::CLEAR.bits());
             let ForWinners { winners, margins, workspace } =
                 frame.workspace.for_winners(config.needs_margins());
             let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);

@@ -14,7 +14,8 @@
 use super::fattening::least_gradient;
 use super::open::{BLOCK, for_columns, words};
 use crate::imaging::Noise;
-use crate::matching::backend::loops::{HAS_VECTORS, empty_row, fill_bytes, keep_loop, keep_scalar_loop};
+use crate::matching::backend::Isa;
+use crate::matching::backend::loops::{HAS_VECTORS, NO_ANSWER, fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::rings::waiting;
 use crate::matching::memory::slices::{part, part_mut, split_mut};
@@ -216,7 +217,7 @@ fn mark_blocks(of: Range<usize>, blocks: &mut [[u8; WORD]]) {
 #[inline(never)]
 pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
     if is_asked::<S>(frame) {
-        let first = usize::from(frame.config.min_disparity).min(frame.width);
+        let (first, backend) = (usize::from(frame.config.min_disparity).min(frame.width), frame.backend);
         let (answers, flags) = (frame.band.row_mut(newest), frame.flags.row_mut(newest));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             // Left of the first candidate pixels are outside.
@@ -234,7 +235,7 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
                     *flags = flags.union(PixelFlags::AMBIGUOUS);
                 }
             }
-            empty_row(part_mut(answers, places));
+            backend.fill_bytes(part_mut(answers, places), NO_ANSWER);
         });
     }
 }

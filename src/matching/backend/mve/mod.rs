@@ -55,7 +55,7 @@ use super::work::{
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::layout::OUTSIDE;
 use crate::matching::memory::slices::{chunks, part, split_mut};
-use crate::matching::memory::views::view_mut;
+use crate::matching::memory::views::{Plain, view_mut};
 use crate::matching::memory::winners::{Lengths, Select};
 use crate::units::Disparity;
 use core::ops::Range;
@@ -79,6 +79,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn candidates(self, disparities: usize, most: usize) -> usize {
         armv7em::candidates(disparities, most)
+    }
+
+    #[inline(always)]
+    fn fill_bytes<T: Plain>(self, row: &mut [T], byte: u8) {
+        fill(view_mut::<T, u8>(row), byte);
     }
 
     #[inline]

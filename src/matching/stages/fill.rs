@@ -7,7 +7,7 @@
 //! [`PixelFlags::FILLED`], and no other answer's uncertainty looks at it: [`undo`] takes it out of the
 //! row once the row has been seen.
 
-use crate::matching::backend::loops::{keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{HAS_VECTORS, keep_loop, keep_scalar_loop};
 use crate::matching::backend::{FillWork, Isa};
 use crate::matching::memory::rings::waiting;
 use crate::matching::method::Frame;
@@ -35,7 +35,7 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
 /// Takes out what was filled: no answer again. The flags stay as they are.
 #[inline(never)]
 fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
-    if cfg!(any(stereopsis_simd, stereopsis_vectors)) {
+    if HAS_VECTORS {
         return undo_each(answers, flags);
     }
     /// The flag in each byte.

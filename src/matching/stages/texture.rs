@@ -5,7 +5,7 @@
 //! column.
 
 use crate::matching::backend::MethodParameters;
-use crate::matching::backend::loops::{fill_bytes, keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{fill_bytes, keep_loop, keep_scalar_loop, once_without_vectors};
 use crate::matching::config::Checks;
 use crate::matching::memory::Rows5;
 use crate::matching::memory::slices::part;
@@ -50,7 +50,7 @@ impl Texture<'_> {
         let Some(line) = line else {
             for x in 0..self.counts.len() {
                 keep_loop();
-                self.push_at::<S>(x, false);
+                push_at::<S>(self, x, false);
             }
             return;
         };
@@ -68,15 +68,7 @@ impl Texture<'_> {
         for &(x, left, right) in ends.iter().take(line.len().min(2)) {
             keep_loop();
             let [left, right] = [left, right].map(|x| line.get(x).copied().unwrap_or(0));
-            self.push_at::<S>(x, left.abs_diff(right) >= gradient);
-        }
-    }
-
-    /// Moves one column on.
-    #[cfg_attr(not(stereopsis_simd), inline(never))]
-    fn push_at<S: MethodParameters>(&mut self, x: usize, textured: bool) {
-        if let (Some(word), Some(count)) = (self.history.get_mut(x), self.counts.get_mut(x)) {
-            go_on::<S>(word, count, textured);
+            push_at::<S>(self, x, left.abs_diff(right) >= gradient);
         }
     }
 
@@ -94,6 +86,15 @@ impl Texture<'_> {
             count += column(x + S::RADIUS_X);
             count -= column(x.wrapping_sub(S::RADIUS_X + 1));
             *flags = flags.union(PixelFlags::UNTEXTURED.when(count < pixels));
+        }
+    }
+}
+
+once_without_vectors! {
+    /// Moves column `x` on.
+    fn push_at<S: MethodParameters>(texture: &mut Texture<'_>, x: usize, textured: bool) {
+        if let (Some(word), Some(count)) = (texture.history.get_mut(x), texture.counts.get_mut(x)) {
+            go_on::<S>(word, count, textured);
         }
     }
 }

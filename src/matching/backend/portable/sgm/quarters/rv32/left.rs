@@ -28,7 +28,6 @@ pub(in super::super) fn left<const WORDS: usize, const ALL: bool>(
 pub(in super::super) fn left_words<const WORDS: usize, const ALL: bool>(
     row: &Row,
     work: &mut PathWork<'_>,
-    guide: Guide<'_>,
     winners: &mut [Winner],
 ) {
     let count = words::<WORDS, ALL>(work);

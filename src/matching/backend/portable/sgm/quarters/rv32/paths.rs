@@ -34,7 +34,7 @@ pub(in super::super) fn select_words<const WORDS: usize, const ALL: bool>(
     let row = Row::new::<WORDS, ALL>(work, guide, along_of::<WORDS, ALL>());
     right::<WORDS, ALL>(&row, work, guide);
     down::<WORDS, ALL>(&row, work, guide);
-    left_words::<WORDS, ALL>(&row, work, guide, winners);
+    left_words::<WORDS, ALL>(&row, work, winners);
 }
 
 /// What takes a path along the row.

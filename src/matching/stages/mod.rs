@@ -89,6 +89,8 @@ macro_rules! steps {
         }
     )*};
     ($name:ident, $method:ty, $most:literal) => {
+        // As a part of the matcher's own step it would look every field of the configuration up behind the
+        // matcher's arrays, in twice the code.
         #[inline(never)]
         fn $name(frame: Frame<'_>, y: usize, lines: Option<[&Rows5<'_>; 2]>) {
             step::<$method, $most>(frame, y, lines);

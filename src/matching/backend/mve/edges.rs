@@ -17,7 +17,7 @@ pub(super) fn push(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
     }
 }
 
-/// All but the columns at the ends: 23 instructions for eight pixels.
+/// All but the columns at the ends: 20 instructions for eight pixels.
 #[inline(never)]
 fn push_inner(edges: &mut [u8], [above, line, below]: &[&[u8]; 3], least: u16) {
     let count = edges.len().saturating_sub(2);

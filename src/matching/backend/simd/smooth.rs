@@ -40,7 +40,7 @@ pub(super) fn smooth(
     // The answers as they were, with none outside.
     let Some(before) = workspace.get_mut(..width + MARGIN) else { return };
     before.fill(Disparity::NONE.raw());
-    for (before, answer) in before.iter_mut().skip(REACH).zip(answers.iter()) {
+    for (before, answer) in part_mut(before, REACH..REACH + width).iter_mut().zip(answers.iter()) {
         *before = answer.raw();
     }
     count(part(before, REACH..REACH + width), lengths, step);
@@ -101,6 +101,27 @@ fn averaged<const RADIUS: usize>(
     out
 }
 
+/// Of a group and the answer before it: a bit for each that is not of one surface with the one before.
+#[inline(always)]
+fn ends(group: &[u16; TOGETHER + 1], step: Disparity) -> u64 {
+    let mut ends = 0;
+    if let Some((before, here)) = group.first_chunk::<TOGETHER>().zip(group.last_chunk::<TOGETHER>()) {
+        for i in 0..TOGETHER {
+            ends |= u64::from(!of_one(here[i], before[i], step)) << i;
+        }
+    }
+    ends
+}
+
+/// Does something with the place of each bit that is set, the lowest first.
+#[inline(always)]
+fn each(mut bits: u64, mut work: impl FnMut(usize)) {
+    while bits != 0 {
+        work(bits.trailing_zeros() as usize);
+        bits &= bits - 1;
+    }
+}
+
 /// For every answer how many its surface has: surface by surface.
 #[inline(always)]
 fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
@@ -115,25 +136,22 @@ fn count(answers: &[u16], lengths: &mut [u16], step: Disparity) {
         }
         begin = x;
     };
-    // Of a group and the answer before it: which are not of one surface with the one before.
-    let pairs = answers.windows(TOGETHER + 1).step_by(TOGETHER);
-    for (x, group) in (1..).step_by(TOGETHER).zip(pairs) {
-        let Some((before, here)) = group.first_chunk::<TOGETHER>().zip(group.last_chunk::<TOGETHER>()) else {
-            break;
-        };
-        let mut ends = 0;
-        for i in 0..TOGETHER {
-            ends |= u64::from(!of_one(here[i], before[i], step)) << i;
-        }
-        while ends != 0 {
-            end_at(x + ends.trailing_zeros() as usize);
-            ends &= ends - 1;
-        }
+    let mut groups = answers.windows(TOGETHER + 1).step_by(TOGETHER);
+    let mut x = 1;
+    while let Some(group) = groups.next().and_then(|group| group.first_chunk()) {
+        each(ends(group, step), |place| end_at(x + place));
+        x += TOGETHER;
     }
-    let grouped = answers.len().saturating_sub(1) / TOGETHER * TOGETHER;
-    for (x, pair) in (grouped + 1..).zip(part(answers, grouped..).windows(2)) {
-        if !of_one(pair[1], pair[0], step) {
-            end_at(x);
+    if let Some(group) = answers.last_chunk() {
+        // The last group is moved back to end with the row: what is of groups before is known.
+        let known = TOGETHER + x - answers.len();
+        let new = ends(group, step).checked_shr(known as u32).unwrap_or(0);
+        each(new, |place| end_at(x + place));
+    } else {
+        for (x, pair) in (1..).zip(answers.windows(2)) {
+            if !of_one(pair[1], pair[0], step) {
+                end_at(x);
+            }
         }
     }
     end_at(answers.len());

@@ -49,7 +49,7 @@ pub fn census_wide8(rows: &[&[u8]; 5], out: &mut [u8]) {
 
 /// Number of columns computed at a time, as vector lanes or in an unrolled loop.
 const LANES: usize = if cfg!(stereopsis_simd) {
-    32
+    64
 } else if cfg!(stereopsis_vectors) {
     16
 } else {

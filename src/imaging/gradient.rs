@@ -42,7 +42,13 @@ pub fn gradients(rows: &[&[u8]; 3], most: u8, along: &mut [u8], across: &mut [u8
 }
 
 /// Number of columns computed at a time, as vector lanes or in an unrolled loop.
-const LANES: usize = if cfg!(any(stereopsis_simd, stereopsis_vectors)) { 16 } else { 4 };
+const LANES: usize = if cfg!(stereopsis_simd) {
+    32
+} else if cfg!(stereopsis_vectors) {
+    16
+} else {
+    4
+};
 /// Number of columns that a group of gradients reads.
 const AROUND: usize = LANES + 2;
 

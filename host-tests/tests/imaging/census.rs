@@ -8,7 +8,7 @@ use stereopsis_host::twin::Picture;
 use stereopsis_host::twin::census::{PLUS4, RING8, WIDE8, census};
 use stereopsis_host::twin::smooth::Seen;
 
-const WIDEST: usize = 70;
+const WIDEST: usize = 140;
 
 /// All three codes of the whole picture, each as 32 bits, through the core's line window.
 fn core_census(image: &GrayImage) -> [Vec<u32>; 3] {
@@ -78,7 +78,7 @@ fn extremes_and_ties() {
         Pattern::Ramp(29),
     ];
     for pattern in patterns {
-        for (width, height) in [(1, 1), (2, 3), (5, 5), (16, 9), (33, 7), (70, 20)] {
+        for (width, height) in [(1, 1), (2, 3), (5, 5), (16, 9), (33, 7), (140, 20)] {
             let codes = compare(&pattern.pair(width, height, 5).0, &format!("{pattern:?}"));
             if let Pattern::Constant(_) = pattern {
                 assert!(

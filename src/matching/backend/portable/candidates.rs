@@ -25,9 +25,8 @@ impl<G: Group, const CELLS: usize, const SLIDES: bool> Candidates<G, CELLS, SLID
     #[inline(always)]
     pub fn next(&mut self, here: &[u8]) -> &[G; CELLS] {
         if SLIDES && G::IS_A_LINE {
-            let mut next = G::splat(here.last().copied().unwrap_or(0));
-            for cell in self.0.iter_mut().rev() {
-                (*cell, next) = (cell.before(next), *cell);
+            for (cell, bytes) in self.0.iter_mut().zip(G::groups(here)) {
+                *cell = cell.moved(bytes);
             }
         } else {
             self.load(here);

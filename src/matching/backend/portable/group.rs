@@ -11,6 +11,8 @@ pub trait Group: Copy + 'static {
     type Cell: Copy + 'static;
     /// A group anywhere in memory.
     type Bytes: Copy + 'static;
+    /// A number of eight bits in memory, in the form that is put in all lanes as it is read.
+    type Number: Copy + Default;
 
     /// The cells of a slice, as far as they are whole ones.
     fn cells(bytes: &[u8]) -> &[Self::Cell];
@@ -23,6 +25,16 @@ pub trait Group: Copy + 'static {
     fn cell(self) -> Self::Cell;
     /// Puts a number of eight bits in all lanes.
     fn splat(number: u8) -> Self;
+
+    /// The number that will be put in all lanes.
+    fn number(number: u8) -> Self::Number;
+    /// [`Self::splat`].
+    fn splat_number(number: Self::Number) -> Self;
+    /// The group that stands here, given this one, which stands a byte before.
+    #[inline(always)]
+    fn moved(self, here: &Self::Bytes) -> Self {
+        Self::of_bytes(*here)
+    }
 
     /// The sum, of eight bits.
     fn plus(self, other: Self) -> Self;

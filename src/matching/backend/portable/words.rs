@@ -58,6 +58,7 @@ pub(in crate::matching::backend) struct Word(u32);
 impl Group for Word {
     const LANES: usize = 4;
     type Cell = u32;
+    type Number = u8;
     type Bytes = [u8; 4];
 
     #[inline(always)]
@@ -93,6 +94,16 @@ impl Group for Word {
     #[inline(always)]
     fn splat(number: u8) -> Self {
         Self(u32::from(number) * ONE)
+    }
+
+    #[inline(always)]
+    fn number(number: u8) -> u8 {
+        number
+    }
+
+    #[inline(always)]
+    fn splat_number(number: u8) -> Self {
+        Self::splat(number)
     }
 
     #[inline(always)]

@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::half_words::HalfWords;
-use super::registers::{AROUND, BITS_APART_OF_FOUR, by_half_words, half_words, register};
+use super::registers::{AROUND, BITS_APART_OF_FOUR, by_shifts, half_words, register};
 use super::x86::partners::Places;
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
@@ -43,6 +43,11 @@ pub(super) const fn lanes_after<const LANES: usize>() -> [u8; LANES] {
     }
 }
 
+/// The matrix that GFNI multiplies the bits of a byte by to shift them to the right by some places.
+pub(super) const fn shift_right(by: i32) -> i64 {
+    0x0102_0408_1020_4080u64.wrapping_shl(8 * by as u32) as i64
+}
+
 /// How many lanes there are after each of 256.
 pub(super) const LANES_AFTER: &[u8; 256] = &{
     let mut lanes = [0; 256];
@@ -66,6 +71,7 @@ macro_rules! safely {
 impl<const BY_AVX512: bool> Group for Bytes32<BY_AVX512> {
     register! {
         32 bytes, load _mm256_loadu_si256, store _mm256_storeu_si256, splat _mm256_set1_epi8,
+        numbers u8 _mm256_set1_epi8,
         plus _mm256_add_epi8, plus_saturating _mm256_adds_epu8,
         minus _mm256_sub_epi8, minus_saturating _mm256_subs_epu8,
         min _mm256_min_epu8, max _mm256_max_epu8,
@@ -74,7 +80,12 @@ impl<const BY_AVX512: bool> Group for Bytes32<BY_AVX512> {
         four_bits_apart _mm256_shuffle_epi8,
     }
 
-    by_half_words!(shift _mm256_srli_epi16);
+    by_shifts!();
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        safely!(Self(_mm256_abs_epi8(_mm256_sub_epi8(self.0, other.0))))
+    }
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
@@ -207,6 +218,16 @@ impl<const BY_AVX512: bool> HalfWords for Bytes32<BY_AVX512> {
 }
 
 impl<const BY_AVX512: bool> Bytes32<BY_AVX512> {
+    /// Each number, shifted to the right.
+    #[inline(always)]
+    fn shifted_right<const BY: i32>(self) -> Self {
+        if BY_AVX512 {
+            let shift = safely!(_mm256_set1_epi64x(const { shift_right(BY) }));
+            return safely!(Self(_mm256_gf2p8affine_epi64_epi8::<0>(self.0, shift)));
+        }
+        safely!(Self(_mm256_srli_epi16::<BY>(self.0))).and(Self::splat(0xff >> BY))
+    }
+
     /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
     fn last_lane_of(cells: &[Self], number: Self) -> usize {

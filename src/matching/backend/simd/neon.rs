@@ -22,6 +22,7 @@ macro_rules! safely {
 impl Group for Vector {
     register! {
         16 bytes, load vld1q_u8, store vst1q_u8, splat vdupq_n_u8,
+        numbers u8 vdupq_n_u8,
         plus vaddq_u8, plus_saturating vqaddq_u8,
         minus vsubq_u8, minus_saturating vqsubq_u8,
         min vminq_u8, max vmaxq_u8,

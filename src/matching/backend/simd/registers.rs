@@ -3,7 +3,8 @@
 use crate::matching::memory::winners::BESIDE;
 
 /// Items of an `impl Group` for a register of so many bytes, from a table: the instructions that load, store
-/// and fill a register, then those that make one register of two, by the operation that they are.
+/// and fill a register; the numbers in memory that it is filled with, and by which instruction; then those
+/// that make one register of two, by the operation that they are.
 ///
 /// Where it is called, `safely!` says why the instructions may be used. Beside the items an `impl` needs
 /// `last_lane_of(cells, number)`: the last lane of all cells that has the number which is in all lanes of
@@ -11,11 +12,13 @@ use crate::matching::memory::winners::BESIDE;
 macro_rules! register {
     (
         $lanes:literal bytes, load $load:ident, store $store:ident, splat $splat:ident,
+        numbers $number:ident $splat_number:ident,
         $($operation:ident $instruction:ident),* $(,)?
     ) => {
         const LANES: usize = $lanes;
         type Cell = [u8; $lanes];
         type Bytes = [u8; $lanes];
+        type Number = $number;
 
         #[inline(always)]
         fn cells(bytes: &[u8]) -> &[Self::Cell] {
@@ -47,6 +50,17 @@ macro_rules! register {
         #[inline(always)]
         fn splat(number: u8) -> Self {
             safely!(Self($splat(number as _)))
+        }
+
+        // The same in each of its bytes.
+        #[inline(always)]
+        fn number(number: u8) -> $number {
+            $number::from(number) * ($number::MAX / 255)
+        }
+
+        #[inline(always)]
+        fn splat_number(number: $number) -> Self {
+            safely!(Self($splat_number(number as _)))
         }
 
         $(
@@ -103,29 +117,23 @@ macro_rules! half_words {
 }
 pub(super) use half_words;
 
-/// Items of an `impl Group` for what x86-64 has no instruction for, by the one that shifts half-words to the
-/// right.
+/// Items of an `impl Group` for what x86-64 has no instruction for, by `shifted_right`.
 #[cfg(target_arch = "x86_64")]
-macro_rules! by_half_words {
-    (shift $shift:ident) => {
-        #[inline(always)]
-        fn apart(self, other: Self) -> Self {
-            self.minus_saturating(other).or(other.minus_saturating(self))
-        }
-
+macro_rules! by_shifts {
+    () => {
         #[inline(always)]
         fn average_down(self, other: Self) -> Self {
-            safely!(Self($shift::<1>(self.plus(other).0))).and(Self::splat(0x7f))
+            self.plus(other).shifted_right::<1>()
         }
 
         #[inline(always)]
         fn quarter(self) -> Self {
-            safely!(Self($shift::<2>(self.0))).and(Self::splat(0x3f))
+            self.shifted_right::<2>()
         }
     };
 }
 #[cfg(target_arch = "x86_64")]
-pub(super) use by_half_words;
+pub(super) use by_shifts;
 
 /// Ones in the lane 256 and as many beside it as belong to a winner.
 pub(super) const AROUND: &[u8; 512] = &{

@@ -26,6 +26,7 @@ macro_rules! safely {
 impl Group for Vector {
     register! {
         16 bytes, load v128_load, store v128_store, splat u8x16_splat,
+        numbers u8 u8x16_splat,
         plus u8x16_add, plus_saturating u8x16_add_sat,
         minus u8x16_sub, minus_saturating u8x16_sub_sat,
         min u8x16_min, max u8x16_max,

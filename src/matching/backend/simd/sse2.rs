@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::half_words::HalfWords;
-use super::registers::{AROUND, by_half_words, half_words, register};
+use super::registers::{AROUND, by_shifts, half_words, register};
 use crate::matching::backend::portable::group::Group;
 use core::arch::x86_64::*;
 
@@ -23,6 +23,7 @@ macro_rules! safely {
 impl Group for Vector {
     register! {
         16 bytes, load _mm_loadu_si128, store _mm_storeu_si128, splat _mm_set1_epi8,
+        numbers u8 _mm_set1_epi8,
         plus _mm_add_epi8, plus_saturating _mm_adds_epu8,
         minus _mm_sub_epi8, minus_saturating _mm_subs_epu8,
         min _mm_min_epu8, max _mm_max_epu8,
@@ -30,7 +31,12 @@ impl Group for Vector {
         or _mm_or_si128, and _mm_and_si128,
     }
 
-    by_half_words!(shift _mm_srli_epi16);
+    by_shifts!();
+
+    #[inline(always)]
+    fn apart(self, other: Self) -> Self {
+        self.minus_saturating(other).or(other.minus_saturating(self))
+    }
 
     #[inline(always)]
     fn bits_apart(self, other: Self) -> Self {
@@ -109,6 +115,12 @@ impl HalfWords for Vector {
 }
 
 impl Vector {
+    /// Each number, shifted to the right.
+    #[inline(always)]
+    fn shifted_right<const BY: i32>(self) -> Self {
+        safely!(Self(_mm_srli_epi16::<BY>(self.0))).and(Self::splat(0xff >> BY))
+    }
+
     /// The last lane that has a number, which one has: see [`register`].
     #[inline(always)]
     fn last_lane_of(cells: &[Self], number: Self) -> usize {

@@ -13,8 +13,8 @@ use crate::matching::memory::winners::{Select, WinnerRows};
 use core::arch::x86_64::__cpuid;
 
 cpufeatures::new!(avx2, "avx2");
-// Level 4 of x86-64, and what counts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came after.
-// Registers of 512 bits slow older processors down.
+// Level 4 of x86-64, and what counts, shifts and moves bytes of 512 bits: Ice Lake, Zen 4 and what came
+// after. Registers of 512 bits slow older processors down.
 cpufeatures::new!(
     avx512,
     "avx2",
@@ -24,7 +24,8 @@ cpufeatures::new!(
     "avx512dq",
     "avx512vl",
     "avx512vbmi",
-    "avx512bitalg"
+    "avx512bitalg",
+    "gfni"
 );
 
 /// Whether the processor counts leading zeros; `cpufeatures` does not know that one.
@@ -146,12 +147,16 @@ impl Avx512 {
     }
 }
 
-#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+#[target_feature(
+    enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg,gfni"
+)]
 fn run_512(work: impl FnOnce()) {
     work();
 }
 
-#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+#[target_feature(
+    enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg,gfni"
+)]
 fn row_512<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>) {
     match work.stride {
         32 => in_groups::<S, WideByAvx512, 1, true>(work, select),
@@ -164,7 +169,9 @@ fn row_512<S: WindowParameters>(work: WindowWork<'_>, select: Option<Select<'_>>
 }
 
 /// [`in_wide`] with AVX-512's instructions.
-#[target_feature(enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg")]
+#[target_feature(
+    enable = "avx2,lzcnt,avx512f,avx512bw,avx512cd,avx512dq,avx512vl,avx512vbmi,avx512bitalg,gfni"
+)]
 #[inline(never)]
 fn in_groups<S: WindowParameters, G: Group, const CELLS: usize, const ALL: bool>(
     work: WindowWork<'_>,
@@ -188,7 +195,8 @@ mod tests {
             && has!("avx512dq")
             && has!("avx512vl")
             && has!("avx512vbmi")
-            && has!("avx512bitalg");
+            && has!("avx512bitalg")
+            && has!("gfni");
         assert_eq!(Avx2::detect().is_some(), has_avx2);
         assert_eq!(Avx512::detect().is_some(), has_avx2 && has_avx512);
     }

@@ -155,7 +155,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
             |least, &cell| least.min(cell),
         );
         let least = least.least();
-        let (step, jump) = (G::of(change[0]), least.plus(G::of(change[1])));
+        let (step, jump) = (G::of(change[0]), G::of(change[1]));
         let (mut before, mut here) = (None, self.0.first().copied().unwrap_or(steps.far));
         for (i, &cost) in costs.iter().enumerate().take(CELLS) {
             let next = if i + 1 < costs.len() { self.0.get(i + 1).copied() } else { None };
@@ -163,7 +163,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
             let above = before.map_or(here.after_end(steps.far), |before| here.after(before));
             let below = next.map_or(here.before_end(steps.far), |next| here.before(next));
             let beside = above.min(below).plus(step);
-            let message = here.min(beside).min(jump).minus(least);
+            let message = here.min(beside).minus(least).min(jump);
             if let Some(cell) = self.0.get_mut(i) {
                 *cell = message.plus(G::of(cost));
             }

@@ -1,5 +1,7 @@
 //! NEON registers, which every 64-bit Arm processor has.
 #![allow(unsafe_code)]
+// To compilers later than the oldest that is supported some of the instructions are safe.
+#![allow(unused_unsafe)]
 
 use super::half_words::HalfWords;
 use super::registers::{AROUND, BITS_APART_OF_FOUR, half_words, register};

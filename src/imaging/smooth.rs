@@ -51,13 +51,11 @@ const WORDS: bool = cfg!(not(any(stereopsis_simd, stereopsis_vectors)));
 /// Smooths the columns with neighbours on both sides, and returns their range.
 fn by_columns(near: [&[u8]; 3], out: &mut [u8]) -> Range<usize> {
     // The columns before, at and after each place.
-    let beside = |by: usize| {
-        let [above, middle, below] = near.map(|row| row.get(by..).unwrap_or(&[]).iter());
-        above.zip(middle).zip(below).map(|((&above, &middle), &below)| quarter(above, middle, below))
-    };
+    let [above, middle, below] = near.map(|row| row.windows(3));
     let inner = out.get_mut(1..).unwrap_or(&mut []).iter_mut();
     let mut end = 1;
-    for (((out, before), here), after) in inner.zip(beside(0)).zip(beside(1)).zip(beside(2)) {
+    for (out, ((above, middle), below)) in inner.zip(above.zip(middle).zip(below)) {
+        let [before, here, after] = [0, 1, 2].map(|x| quarter(above[x], middle[x], below[x]));
         *out = quarter(before, here, after);
         end += 1;
     }

@@ -78,12 +78,17 @@ pub(in crate::matching::backend) fn median_in_rows(rows: [&[Disparity]; 3], out:
     let grouped = if inner < LANES { 1 } else { 1 + inner };
     for x in (0..1).chain(grouped..out.len()) {
         keep_loop();
-        let at = |row: &[Disparity], x: usize| i32::from(row.get(x).map_or(NONE, |d| d.raw()));
-        let column = |x: usize| rows.map(|row| at(row, x));
+        let columns = [x.wrapping_sub(1), x, x + 1].map(|x| column(&rows, x));
         if let Some(out) = out.get_mut(x) {
-            *out = of_columns([column(x.wrapping_sub(1)), column(x), column(x + 1)]);
+            *out = of_columns(columns);
         }
     }
+}
+
+/// A column of three rows, no answers outside of them.
+#[inline(never)]
+fn column(rows: &[&[Disparity]; 3], x: usize) -> [i32; 3] {
+    rows.map(|row| i32::from(row.get(x).map_or(NONE, |d| d.raw())))
 }
 
 /// The medians of the pixels in the middle.

@@ -242,6 +242,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     }
 
     /// The memory as slices of the frame's real size: what follows is compiled once for each method.
+    // In flash once.
+    #[inline(never)]
     pub(super) fn frame(&mut self) -> Frame<'_> {
         let (width, stride) = self.size();
         let Parts { codes, columns, workspace } = self.memory.parts(width);

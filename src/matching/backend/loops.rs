@@ -1,10 +1,13 @@
 //! Loops that the compiler leaves as they are written, and functions that it compiles once.
 
-use crate::matching::memory::views::{Plain, view_mut};
+use crate::matching::memory::views::{Plain, view, view_mut};
 use crate::units::Disparity;
 
 /// Whether this is a microcontroller with vectors, of which the compiler makes use.
 pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
+
+/// Whether the compiler is kept from writing loops out.
+const KEEPS_LOOPS: bool = cfg!(not(stereopsis_simd));
 
 /// In the body of a loop: on 32-bit cores the loop is neither unrolled nor turned into vectors. Where a row's
 /// work is little, that would take more flash than it saves instructions.
@@ -13,8 +16,9 @@ pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
 /// variable.
 #[inline(always)]
 pub(in crate::matching) fn keep_loop() {
-    #[cfg(not(stereopsis_simd))]
-    core::hint::black_box(());
+    if KEEPS_LOOPS {
+        core::hint::black_box(());
+    }
 }
 
 /// In the body of a loop: [`keep_loop`] on cores without vectors.
@@ -23,6 +27,12 @@ pub(in crate::matching) fn keep_scalar_loop() {
     if !HAS_VECTORS {
         keep_loop();
     }
+}
+
+/// A slice as it is. On 32-bit cores the compiler does not know its length: it writes no loop over it out.
+#[inline(always)]
+pub(in crate::matching) fn keep_length<T>(slice: &[T]) -> &[T] {
+    if KEEPS_LOOPS { core::hint::black_box(slice) } else { slice }
 }
 
 /// Fills a row, 16 numbers at a time: on 32-bit cores in a fraction of the instructions of the compiler's own
@@ -40,20 +50,11 @@ pub(in crate::matching) fn fill_row<T: Copy>(row: &mut [T], number: T) {
     }
 }
 
-/// Copies a row to another one of its length, four numbers at a time.
+/// Copies a row to another one of its length.
 #[inline(always)]
-pub(in crate::matching) fn copy_row<T: Copy>(from: &[T], to: &mut [T]) {
+pub(in crate::matching) fn copy_row<T: Plain>(from: &[T], to: &mut [T]) {
     debug_assert_eq!(from.len(), to.len(), "copied to a row of another length");
-    let (groups, rest) = to.as_chunks_mut::<4>();
-    let (from, from_rest) = from.as_chunks();
-    for (to, from) in groups.iter_mut().zip(from) {
-        keep_loop();
-        *to = *from;
-    }
-    for (to, from) in rest.iter_mut().zip(from_rest) {
-        keep_loop();
-        *to = *from;
-    }
+    copy_all(view(from), view_mut(to));
 }
 
 /// Functions that are part of their caller where that is compiled with a kernel's vectors, and elsewhere are
@@ -87,5 +88,18 @@ pub(in crate::matching) fn empty_row(answers: &mut [Disparity]) {
 once_without_vectors! {
     fn fill_all(bytes: &mut [u8], byte: u8) {
         fill_row(bytes, byte);
+    }
+
+    fn copy_all(from: &[u8], to: &mut [u8]) {
+        let (groups, rest) = to.as_chunks_mut::<4>();
+        let (from, from_rest) = from.as_chunks();
+        for (to, from) in groups.iter_mut().zip(from) {
+            keep_loop();
+            *to = *from;
+        }
+        for (to, from) in rest.iter_mut().zip(from_rest) {
+            keep_loop();
+            *to = *from;
+        }
     }
 }

@@ -122,8 +122,8 @@ pub(in crate::matching) struct Guide<'a> {
 
 /// What the costs of a row are averaged with, and how far.
 pub(in crate::matching) struct EdgeWork<'a> {
-    /// The left image's row and the two below it, as far as they are inside of the image.
-    pub guides: [Option<&'a [u8]>; 3],
+    /// The left image's row and the two below it; one outside of the image has no pixels.
+    pub guides: [&'a [u8]; 3],
     /// The average of the row's costs and those above; afterwards that of the next row. As the volumes of
     /// [`PathWork`].
     pub above: &'a mut [u8],

@@ -191,11 +191,10 @@ impl<'a> Lengths<'a> {
         part_mut(self.0, places).iter_mut().for_each(|length| *length = most.min(*length));
     }
 
-    /// Lets no byte of some pixels be over `most`.
+    /// The bytes of some pixels.
     #[inline(always)]
-    pub fn limit_bytes(&mut self, places: Range<usize>, most: u8) {
-        let bytes = view_mut::<u16, u8>(self.0);
-        part_mut(bytes, places).iter_mut().for_each(|length| *length = most.min(*length));
+    pub fn bytes_of(&mut self, places: Range<usize>) -> &mut [u8] {
+        part_mut(view_mut::<u16, u8>(self.0), places)
     }
 
     /// A byte for each pixel, the length as far as it holds it.
@@ -271,14 +270,14 @@ mod tests {
     }
 
     #[test]
-    fn lengths_are_limited_in_their_places() {
+    fn lengths_change_in_their_places() {
         let mut lengths = [1, 200, 300, 4, 500];
         Lengths(&mut lengths).limit_half_words(1..4, 250);
         assert_eq!(lengths, [1, 200, 250, 4, 500]);
         let mut lengths = [0u16; 5];
         view_mut::<u16, u8>(&mut lengths)[..5].copy_from_slice(&[9, 8, 7, 6, 5]);
-        Lengths(&mut lengths).limit_bytes(1..4, 7);
-        assert_eq!(Lengths(&mut lengths).bytes(), [9, 7, 7, 6, 5]);
+        Lengths(&mut lengths).bytes_of(1..4).fill(7);
+        assert_eq!(Lengths(&mut lengths).bytes(), [9, 7, 7, 7, 5]);
         assert_eq!(Lengths(&mut lengths).half_words().len(), 5);
     }
 }

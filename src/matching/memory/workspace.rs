@@ -88,7 +88,8 @@ impl<'a> RowWorkspace<'a> {
     }
 
     /// Gives the rows of `width` pixels their places, where they have none yet: the costs are done with.
-    #[inline(always)]
+    // In flash once.
+    #[inline(never)]
     pub(in crate::matching) fn divide(&mut self, width: usize) {
         self.check(Phase::Costs);
         if self.winners.is_empty() {

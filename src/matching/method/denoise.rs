@@ -5,6 +5,7 @@
 //! without.
 
 use crate::imaging::{Noise, smooth};
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::memory::Rows5;
 
 /// How far gradients are shifted to the right.
@@ -16,15 +17,15 @@ pub(super) const fn gradient_shift(noise: Noise) -> u32 {
     }
 }
 
-/// The lines of both images, smoothed where `rows` says so, each in one of the places.
+/// The lines of both images: from the first on every so many-th one smoothed, each in one of the places.
 pub(super) fn denoise<'a>(
     lines: [&Rows5<'a>; 2],
     smoothed: &mut [Rows5<'a>; 2],
-    rows: &[usize],
+    every: usize,
     mut places: impl Iterator<Item = &'a mut [u8]>,
 ) {
     for (lines, smoothed) in lines.into_iter().zip(smoothed) {
-        denoise_lines(lines, smoothed, rows, &mut places);
+        denoise_lines(lines, smoothed, every, &mut places);
     }
 }
 
@@ -33,14 +34,17 @@ pub(super) fn denoise<'a>(
 fn denoise_lines<'a>(
     lines: &Rows5<'a>,
     smoothed: &mut Rows5<'a>,
-    rows: &[usize],
+    every: usize,
     places: &mut impl Iterator<Item = &'a mut [u8]>,
 ) {
-    *smoothed = *lines;
-    for &row in rows {
-        if let (Some(to), Some(place)) = (smoothed.get_mut(row), places.next()) {
+    for (row, (smoothed, line)) in smoothed.iter_mut().zip(lines).enumerate() {
+        keep_loop();
+        *smoothed = line;
+        if row.is_multiple_of(every)
+            && let Some(place) = places.next()
+        {
             smooth(lines, row, place);
-            *to = place;
+            *smoothed = place;
         }
     }
 }

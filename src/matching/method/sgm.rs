@@ -10,7 +10,7 @@
 use super::denoise::{denoise, gradient_shift};
 use super::{Costs, Frame, Method};
 use crate::imaging::{Noise, smooth};
-use crate::matching::backend::loops::copy_row;
+use crate::matching::backend::loops::{copy_row, once_without_vectors};
 use crate::matching::backend::{CostWork, EdgeWork, Guide, Isa, MethodParameters, PathWork, SgmParameters};
 use crate::matching::config::Checks;
 use crate::matching::memory::layout::{COLUMNS_OFF, PathWorkspace, Volumes};
@@ -197,6 +197,13 @@ impl<const GUIDES: usize, const VOLUMES: usize, const W: usize, const D: usize> 
     }
 }
 
+once_without_vectors! {
+    /// Line `y` of the left image, one of the last ones.
+    fn guide<S: SgmParameters>(lines: &[u8], y: usize, width: usize) -> &[u8] {
+        slot(lines, y % guides::<S>(), width)
+    }
+}
+
 /// Adds row `bottom` to the costs of the row above it, and selects the winners of that one.
 #[inline(always)]
 fn select<S: SgmParameters, const MOST: usize>(
@@ -221,7 +228,7 @@ fn select<S: SgmParameters, const MOST: usize>(
         sums: &mut [],
         workspace: &mut [],
     };
-    let guide = |y: usize| slot(frame.codes, y % guides::<S>(), width);
+    let guide = |y: usize| guide::<S>(frame.codes, y, width);
     let has_noise = config.noise != Noise::None;
     let mut smoothed = [[&[][..]; 5]; 2];
     let seen = lines.map(|lines| {
@@ -229,7 +236,7 @@ fn select<S: SgmParameters, const MOST: usize>(
             return lines;
         }
         // Where sums will be, ten smoothed lines have room: a column has sixteen sums at least.
-        denoise(lines, &mut smoothed, &[0, 1, 2, 3, 4], chunks_mut(sums, width));
+        denoise(lines, &mut smoothed, 1, chunks_mut(sums, width));
         smoothed.each_ref()
     });
     if let Some(lines) = seen {
@@ -239,8 +246,8 @@ fn select<S: SgmParameters, const MOST: usize>(
     if S::WITHIN_EDGES {
         let (above, below) = split_mut(rest, width * stride);
         let inside = |y: &usize| *y < usize::from(config.height);
-        let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map(guide));
-        let guides = [here, next, seen.map(|[left, _]| left[2])];
+        let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map_or(&[][..], guide));
+        let guides = [here, next, seen.map_or(&[][..], |[left, _]| left[2])];
         frame.backend.sgm_within_edges::<MOST>(&mut work, EdgeWork { guides, above, below });
     }
     // The features are done with, and the smoothed lines.

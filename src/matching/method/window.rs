@@ -133,7 +133,7 @@ fn enter<S: WindowParameters>(frame: &mut Frame<'_>, y: usize, lines: [&Rows5<'_
         // Codes look at three rows of the five.
         let places;
         (places, workspace) = frame.workspace.smoothed_lines(frame.width);
-        denoise(lines, &mut smoothed, &[0, 2, 4], places);
+        denoise(lines, &mut smoothed, 2, places);
         smoothed.each_ref()
     };
     let min_disparity = usize::from(frame.config.min_disparity);

@@ -19,7 +19,7 @@
 //! No memory is added for it: [`notes`](crate::matching::memory::notes) and
 //! [`workspace`](crate::matching::memory::workspace) say where margins and confidences stand.
 
-use crate::matching::backend::loops::{keep_loop, once_without_vectors};
+use crate::matching::backend::loops::{keep_length, keep_loop, once_without_vectors};
 use crate::matching::config::Config;
 use crate::matching::memory::notes::Note;
 use crate::matching::memory::rings::{LOOK_AHEAD, waiting};
@@ -32,8 +32,8 @@ use crate::units::{Disparity, PixelFlags};
 pub(in crate::matching) const AGREEMENT: u8 = 40;
 /// How far a refused pixel counts as being: so far that nothing agrees.
 const MISSING: u16 = 4 * AGREEMENT as u16;
-/// How far off the answers are that are looked at: columns to each side, rows above and below.
-const COLUMNS: [usize; 2] = [4, 8];
+/// How far off the answers are that are looked at: along the row, and above and below.
+const COLUMNS: [isize; 4] = [-8, -4, 4, 8];
 const ROWS: [usize; 2] = [2, 4];
 /// The confidence of an answer that was filled in, the least: it has no costs of its own.
 const FILLED: u8 = 1;
@@ -54,9 +54,9 @@ pub(super) fn make_confidences(frame: &mut Frame<'_>, newest: usize) {
     let [near, far] = ROWS;
     let above = |off: usize| here.checked_sub(off).map_or(&[][..], |y| frame.finished.row(y));
     let below = |off: usize| frame.band.row(here + off);
-    let columns = [above(near), above(far), below(near), below(far)];
+    let column = [above(near), above(far), below(near), below(far)].map(|row| (row, 0));
+    let neighbours = Neighbours { answers, along: COLUMNS.map(|off| (row, off)), column };
     let notes = view_mut::<PixelFlags, Note>(frame.flags.row_mut(here));
-    let neighbours = Neighbours { answers, row, columns };
     confidences(&neighbours, notes, frame.workspace.confidences());
 }
 
@@ -90,11 +90,14 @@ fn take_margins(config: &Config, margins: &[u8], answers: &[Disparity], notes: &
 struct Neighbours<'a> {
     /// The row's answers, after the median where there is one.
     answers: &'a [Disparity],
-    /// The row's answers before the median.
-    row: &'a [Disparity],
-    /// The rows above and below, [`ROWS`] off; empty where there is none.
-    columns: [&'a [Disparity]; 2 * ROWS.len()],
+    /// Those along the row, before the median.
+    along: [Neighbour<'a>; COLUMNS.len()],
+    /// Those above and below; in an empty row where there is none.
+    column: [Neighbour<'a>; 2 * ROWS.len()],
 }
+
+/// An answer beside each one of a row: the row that it stands in, and how many columns farther right.
+type Neighbour<'a> = (&'a [Disparity], isize);
 
 /// Makes confidences of the notes of a row, which become flags again.
 #[inline(never)]
@@ -102,26 +105,23 @@ fn confidences(neighbours: &Neighbours<'_>, notes: &mut [Note], confidences: &mu
     for (x, confidence) in confidences.iter_mut().enumerate() {
         keep_loop();
         let (Some(note), Some(here)) = (notes.get_mut(x), neighbours.answers.get(x)) else { return };
-        // Beside the row there is no answer, which says nothing.
-        let beside = COLUMNS.map(|off| [x.wrapping_sub(off), x + off]);
-        let (mut s, mut t) = (0, 0);
-        for &x in beside.as_flattened() {
-            keep_loop();
-            s = apart(*here, neighbours.row, x).max(s);
-        }
-        for row in neighbours.columns {
-            keep_loop();
-            t = apart(*here, row, x).max(t);
-        }
-        let agreement = |apart: u16| AGREEMENT.saturating_sub((apart / 4).min(255) as u8);
-        *confidence = note.give_back(*here) + agreement(s) + agreement(t);
+        let beside = agreement(*here, &neighbours.along, x) + agreement(*here, &neighbours.column, x);
+        *confidence = note.give_back(*here) + beside;
     }
 }
 
 once_without_vectors! {
-    /// How far the answer in column `x` of a row is, 0 above and beside the image.
-    fn apart(here: Disparity, row: &[Disparity], x: usize) -> u16 {
-        row.get(x).map_or(0, |other| if other.is_some() { other.raw().abs_diff(here.raw()) } else { MISSING })
+    /// What it is worth that the neighbours of the answer in column `x` agree with it. Above and beside the
+    /// image there is none, which says nothing.
+    fn agreement(here: Disparity, neighbours: &[Neighbour<'_>], x: usize) -> u8 {
+        let mut most = 0;
+        for &(row, off) in keep_length(neighbours) {
+            keep_loop();
+            if let Some(other) = row.get(x.wrapping_add_signed(off)) {
+                most = most.max(if other.is_some() { other.raw().abs_diff(here.raw()) } else { MISSING });
+            }
+        }
+        AGREEMENT.saturating_sub((most / 4).min(255) as u8)
     }
 }
 

@@ -106,8 +106,7 @@ fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
         keep_loop();
         let smooth = row.word(number, least);
         let to_right = filled(smooth, smooth & (u32::from_le_bytes(*open) | is_joined));
-        // The bits turn round: what comes from the right is found when all from the left is.
-        let all = filled(smooth.reverse_bits(), to_right.reverse_bits()).reverse_bits();
+        let all = filled_back(smooth, to_right);
         *open = all.to_le_bytes();
         is_joined = all >> (BLOCKS - 1);
     }
@@ -118,8 +117,8 @@ fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
         let mut all = u32::from_le_bytes(*open);
         // Blocks that are joined to an open last one are open already.
         if is_joined > all >> (BLOCKS - 1) {
-            let smooth = row.word(number, least).reverse_bits();
-            all |= filled(smooth, smooth & 1).reverse_bits();
+            let smooth = row.word(number, least);
+            all |= filled_back(smooth, smooth & 1 << (BLOCKS - 1));
             *open = all.to_le_bytes();
         }
         is_joined = all & 1;
@@ -130,6 +129,20 @@ fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
 #[inline(always)]
 fn filled(smooth: u32, seeds: u32) -> u32 {
     smooth & !smooth.wrapping_add(seeds) | seeds
+}
+
+/// [`filled`] the other way, down to the first bit that is joined to it.
+#[inline(never)]
+fn filled_back(smooth: u32, seeds: u32) -> u32 {
+    // Joined across one bit, across two, four and so on.
+    let (mut all, mut joined, mut by) = (seeds, smooth, core::hint::black_box(1));
+    while by < BLOCKS {
+        keep_loop();
+        all |= joined & all >> by;
+        joined &= joined >> by;
+        by *= 2;
+    }
+    all
 }
 
 /// Does something with the columns of the blocks that are open, or beside one that is: with those that follow

@@ -249,15 +249,12 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone());
             // On a large pattern nothing was filled.
-            let (groups, rest) = view::<PixelFlags, u8>(flags).as_chunks::<16>();
-            let mut words = [0u32; 4];
-            for group in groups {
+            let (fours, rest) = view::<PixelFlags, u8>(flags).as_chunks();
+            let mut all = 0;
+            for four in fours {
                 keep_scalar_loop();
-                for (word, four) in words.iter_mut().zip(group.as_chunks().0) {
-                    *word |= u32::from_le_bytes(*four);
-                }
+                all |= u32::from_le_bytes(*four);
             }
-            let mut all = words.into_iter().fold(0, |all, word| all | word);
             for &bits in rest {
                 keep_loop();
                 all |= u32::from(bits);

@@ -63,11 +63,11 @@ impl Texture<'_> {
         }
         // At the two ends the pixel itself stands for the neighbour outside.
         let last = line.len().saturating_sub(1);
-        let ends = [(0, 0, 1.min(last)), (last, last.saturating_sub(1), last)];
         // A line of one pixel has one end.
-        for &(x, left, right) in ends.iter().take(line.len().min(2)) {
+        for x in [0, last].into_iter().take(line.len()) {
             keep_loop();
-            let [left, right] = [left, right].map(|x| line.get(x).copied().unwrap_or(0));
+            let beside = [x.saturating_sub(1), last.min(x + 1)];
+            let [left, right] = beside.map(|x| line.get(x).copied().unwrap_or(0));
             push_at::<S>(self, x, left.abs_diff(right) >= gradient);
         }
     }

@@ -38,6 +38,7 @@ mod vertical;
 mod windows;
 
 use super::isa::{Isa, sole_kernel};
+use super::loops::keep_scalar_loop;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::work::{
     AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
@@ -120,7 +121,7 @@ impl Isa for Backend {
     #[inline(always)]
     fn limit_lengths(self, lengths: &mut Lengths<'_>, columns: Range<usize>, most: u8) {
         // Lengths are less by the answer itself.
-        lengths.limit_bytes(columns, most.wrapping_sub(1));
+        limit(lengths.bytes_of(columns), most.wrapping_sub(1));
     }
 
     #[inline(always)]
@@ -141,6 +142,15 @@ impl Isa for Backend {
     #[inline(always)]
     fn vertical(self, here: &mut [Disparity], above: &[Disparity], below: &[Disparity]) {
         vertical::vertical(here, above, below);
+    }
+}
+
+/// Lets none of the numbers be over `most`.
+#[inline(always)]
+pub(super) fn limit(numbers: &mut [u8], most: u8) {
+    for number in numbers {
+        keep_scalar_loop();
+        *number = most.min(*number);
     }
 }
 

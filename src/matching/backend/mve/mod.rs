@@ -160,7 +160,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn limit_lengths(self, lengths: &mut Lengths<'_>, columns: Range<usize>, most: u8) {
-        lengths.limit_bytes(columns, most);
+        armv7em::limit(lengths.bytes_of(columns), most);
     }
 
     #[inline(always)]

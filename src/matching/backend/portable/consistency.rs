@@ -8,6 +8,7 @@
 //! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while
 //! nobody offered.
 
+use crate::matching::backend::loops::{fill_bytes, keep_loop};
 use crate::units::PixelFlags;
 
 /// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity.
@@ -15,8 +16,9 @@ use crate::units::PixelFlags;
 /// partner is the first right column.
 #[inline(always)]
 pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {
-    right.fill(u16::MAX);
+    fill_bytes(right, u8::MAX);
     for (x, (key, disparity)) in winners.enumerate() {
+        keep_loop();
         if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {
             // Of one partner, those who come later are farther away: their disparity is larger.
             *kept = key.min(u32::from(*kept)) as u16;

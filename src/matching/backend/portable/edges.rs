@@ -22,9 +22,11 @@ pub(in crate::matching::backend) fn push(edges: &mut [u8], lines: [&[u8]; 3], le
             (sums, done) = (next, done + 4);
         }
     }
-    for x in core::iter::once(0).chain(done..=last) {
+    let mut x = 0;
+    while x <= last {
         keep_scalar_loop();
         push_at(edges, lines, x, least);
+        x = done.max(x + 1);
     }
 }
 

@@ -1,7 +1,7 @@
 //! The left-right check and the sub-pixel fit, pixel by pixel.
 
 use super::{consistency, subpixel};
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{fill_bytes, keep_loop};
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::{AnswerWork, Rules};
 use crate::matching::memory::record::WinnerRecord;
@@ -32,7 +32,7 @@ fn offer(winners: &[Winner], right: &mut [u16]) {
 fn offer_compared(winners: &[Winner], [left, of_right]: [&[u8]; 2], right: &mut [u16]) {
     let count = of_right.len().min(right.len());
     let (Some(of_right), Some(right)) = (of_right.get(..count), right.get_mut(..count)) else { return };
-    right.fill(u16::MAX);
+    fill_bytes(right, u8::MAX);
     for (x, (winner, &left)) in winners.iter().zip(left).enumerate() {
         keep_loop();
         let disparity = winner.disparity();
@@ -57,6 +57,7 @@ pub(in crate::matching::backend) fn answer<S: MethodParameters>(
     flags: &mut [PixelFlags],
 ) {
     for (x, ((answer, flags), &winner)) in answers.iter_mut().zip(flags).zip(winners).enumerate() {
+        keep_loop();
         let kept = consistency::kept(x, winner.disparity() as u8, right);
         (*answer, *flags) = answer_of::<S>(winner, kept, *flags, rules);
     }

@@ -1,6 +1,7 @@
 //! Answers averaged within their surface, pixel by pixel: one pass to the right that counts and adds up, one
 //! back that averages.
 
+use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::work::SmoothWork;
 use crate::matching::config::Checks;
 use crate::units::Disparity;
@@ -63,6 +64,7 @@ fn count(answers: &[Disparity], lengths: &mut [u16], sums: &mut [u16], step: Dis
     let Some((none, sums)) = sums.split_first_mut() else { return };
     *none = sum;
     for (answer, (length_here, sum_here)) in answers.iter().zip(lengths.iter_mut().zip(sums)) {
+        keep_loop();
         let here = u32::from(answer.raw());
         // No branch: pictures decide nothing about the work. `NONE` is far from every answer (Config::check).
         let joined = here.wrapping_sub(before).wrapping_add(step) <= 2 * step;

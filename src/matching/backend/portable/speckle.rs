@@ -1,7 +1,7 @@
 //! Support counted and speckle dropped, answer by answer.
 
 use super::smooth::of_one;
-use crate::matching::backend::loops::{keep_loop, once_without_vectors};
+use crate::matching::backend::loops::{copy_row, keep_loop, once_without_vectors};
 use crate::matching::backend::work::SpeckleWork;
 use crate::matching::memory::rings::LOOK_AHEAD;
 use crate::units::{Disparity, PixelFlags};
@@ -24,21 +24,10 @@ pub(in crate::matching::backend) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
     let pixels = (pixels, if run == 0 { u16::MAX } else { run.into() });
     let columns = here.iter().zip(above).zip(lengths.half_words().iter().zip(kept));
-    match answers {
-        Some(answers) => {
-            let out = answers.iter().zip(flags).zip(finished);
-            drop_speckle(
-                columns,
-                out.map(|((&answer, flags), finished)| (answer, flags, finished)),
-                step,
-                pixels,
-            );
-        }
-        None => {
-            let out = flags.iter_mut().zip(finished);
-            drop_speckle(columns, out.map(|(flags, finished)| (*finished, flags, finished)), step, pixels);
-        }
+    if let Some(answers) = answers {
+        copy_row(answers, finished);
     }
+    drop_speckle(columns, flags.iter_mut().zip(finished), step, pixels);
 }
 
 /// An answer of the newest row with the one above it, its surface's length and what its column keeps.
@@ -48,12 +37,12 @@ once_without_vectors! {
     #[allow(clippy::unnecessary_cast, reason = "a word is a half-word on some cores only")]
     fn drop_speckle<'a>(
         columns: impl Iterator<Item = Column<'a>>,
-        out: impl Iterator<Item = (Disparity, &'a mut PixelFlags, &'a mut Disparity)>,
+        out: impl Iterator<Item = (&'a mut PixelFlags, &'a mut Disparity)>,
         step: Disparity,
         (pixels, run): (u8, u16),
     ) {
         let pixels = Word::from(pixels);
-        for (((here, above), (&length, kept)), (answer, flags, finished)) in columns.zip(out) {
+        for (((here, above), (&length, kept)), (flags, answer)) in columns.zip(out) {
             keep_loop();
             let joined = Word::from(of_one(here.raw(), above.raw(), step));
             let before = Word::from(*kept);
@@ -66,9 +55,10 @@ once_without_vectors! {
             rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
             *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
             let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
-            *finished = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+            let left = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
             // What has no answer is no speckle.
-            *flags = flags.union(PixelFlags::SPECKLE.when(*finished != answer));
+            *flags = flags.union(PixelFlags::SPECKLE.when(left != *answer));
+            *answer = left;
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Answers smoothed down the columns.
 
+use crate::matching::backend::loops::keep_scalar_loop;
 use crate::matching::memory::rings::LOOK_AHEAD;
 use crate::units::Disparity;
 use core::hint::select_unpredictable;
@@ -21,6 +22,7 @@ pub(in crate::matching::backend) fn vertical(
     below: &[Disparity],
 ) {
     for (here, (above, below)) in here.iter_mut().zip(above.iter().zip(below)) {
+        keep_scalar_loop();
         // From what is 1 px less, differences within reach are no less than 0, and all of their bits are
         // below that of 2 px.
         let x = u32::from(here.raw());

@@ -88,7 +88,7 @@ fn row_of<S: WindowParameters, P: Plane, const GROUPS: usize>(
     let mut windows = Windows::new(windows, disparities);
     // What is farther to the left is no candidate's: its sums are zero.
     let (before, after) = (begin.saturating_sub(S::RADIUS_X), begin + S::RADIUS_X);
-    for column in chunks(columns, groups).take(OUTSIDE + after).skip(OUTSIDE + before) {
+    for column in chunks(part(columns, (OUTSIDE + before) * groups..(OUTSIDE + after) * groups), groups) {
         windows.slide::<S>(column, columns);
     }
     let from = |column: usize| part(columns, column * groups..);

@@ -16,7 +16,7 @@
 /// Whether in a column there is an edge between the row and the next one, and between that and the last.
 /// Brightness changes `much` there, or one of them is outside of the image.
 #[inline(always)]
-pub(in crate::matching::backend) fn edges_at(guides: &[Option<&[u8]>; 3], x: usize, much: u8) -> [bool; 2] {
-    let [here, next, last] = guides.map(|row| row.and_then(|row| row.get(x)));
+pub(in crate::matching::backend) fn edges_at(guides: &[&[u8]; 3], x: usize, much: u8) -> [bool; 2] {
+    let [here, next, last] = guides.map(|row| row.get(x));
     [(here, next), (next, last)].map(|rows| !matches!(rows, (Some(a), Some(b)) if a.abs_diff(*b) < much))
 }

@@ -60,12 +60,8 @@ impl<F: FourPixels> FeatureRows for F {
             let [mut code, mut one, mut other] = [[[0; COLUMNS]]; 3];
             codes::<F>([above2, here, below2], &mut code);
             gradients::<F>([above, here, below], gradient, [&mut one, &mut other]);
-            for (row, [four]) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
-                keep_loop();
-                for (to, from) in part_mut(row, x..).iter_mut().zip(&four) {
-                    keep_loop();
-                    *to = *from;
-                }
+            for (row, four) in [(&mut *along, one), (&mut *across, other), (&mut *census, code)] {
+                put(row, x, four);
             }
             x = if x == 0 { REACH + groups * COLUMNS } else { x + COLUMNS };
             if x >= count {
@@ -104,6 +100,15 @@ impl<F: FourPixels> FeatureRows for F {
             let ranges = F::ranges([before, here, next]);
             (*least, *greatest) = (ranges.0.to_le_bytes(), ranges.1.to_le_bytes());
         }
+    }
+}
+
+/// Puts as much of a group from a column on as there is a place for.
+#[inline(never)]
+fn put(row: &mut [u8], column: usize, [four]: [Group; 1]) {
+    for (to, from) in part_mut(row, column..).iter_mut().zip(four) {
+        keep_loop();
+        *to = from;
     }
 }
 

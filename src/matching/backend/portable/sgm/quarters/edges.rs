@@ -11,6 +11,8 @@ use crate::matching::memory::views::view_mut;
 /// no meaning where that is outside of the image.
 #[inline(never)]
 pub(super) fn within_edges(work: &mut PathWork<'_>, edges: EdgeWork<'_>, count: usize) {
+    // Not known when compiled: the loop over a column is not written out.
+    let count = core::hint::black_box(count);
     let much = work.penalties.edges[1];
     let above = chunks_mut(view_mut::<u8, u32>(edges.above), count);
     let below = chunks_mut(view_mut::<u8, u32>(edges.below), count);

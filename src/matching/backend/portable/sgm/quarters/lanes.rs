@@ -59,13 +59,20 @@ pub(super) fn least_of_four(marked: u32) -> u32 {
 /// a lane stand one after the other, those of the next lane after them.
 #[inline(always)]
 pub(super) fn before(place: usize, words: usize) -> impl Fn(usize) -> u32 {
+    let (lanes, rest) = lanes_before(place, words);
+    let next = lanes << 8 | 0xff;
+    move |word| if word < rest { next } else { lanes }
+}
+
+/// The lanes all of whose words are before a place, and how many words of the next lane are.
+#[inline(never)]
+fn lanes_before(place: usize, words: usize) -> (u32, usize) {
     let (mut lanes, mut rest) = (0u32, place);
     while rest >= words && lanes != u32::MAX {
         lanes = lanes << 8 | 0xff;
         rest -= words;
     }
-    let next = lanes << 8 | 0xff;
-    move |word| if word < rest { next } else { lanes }
+    (lanes, rest)
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What costs are made of: right pixels, in the order of the candidates in a column, and left ones.
 
 use super::columns::FOUR;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{keep_length, keep_loop};
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Looks;
 use crate::matching::memory::slices::part;
@@ -36,7 +36,7 @@ const MADE_OF: [(u8, u8); NUMBERS] = [(0, 0x80), (0xff, 0x81), (0, 0), (0, 0), (
 /// the one that it is made of: three of its pixels are that one's last three, and its last pixel is the next
 /// one from `column` on. `right` are rows of `count` features, and three numbers more. Groups behind the last
 /// column are left as they are, or of no meaning.
-#[inline(always)]
+#[inline(never)]
 pub(super) fn shift_in<S: SgmParameters>(
     (right, count): (&[u8], usize),
     column: usize,
@@ -45,6 +45,7 @@ pub(super) fn shift_in<S: SgmParameters>(
 ) {
     // The rows of what stands in a group, in its order.
     let rows = if S::BETWEEN_PIXELS { [4, 5, 1, 2, 3] } else { [0, 0, 1, 2, 3] };
+    let (from, to) = (keep_length(from), keep_length(to));
     let fours = from.as_chunks::<FOUR>().0.iter().zip(to.as_chunks::<FOUR>().0);
     for (kind, (row, (turned, added))) in rows.into_iter().zip(MADE_OF).enumerate() {
         let pixels = part(right, (row * count + column).min(right.len())..).as_chunks::<FOUR>().0;

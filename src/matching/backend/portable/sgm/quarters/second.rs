@@ -8,6 +8,8 @@ use crate::matching::memory::winners::BESIDE;
 /// those of the other two.
 #[inline(always)]
 pub(super) fn close_sums(path: &[u32], sums: &mut [u32], open: &mut [u32], lanes: impl Fn(usize) -> u32) {
+    // It is rarely asked for: no loop is written out, whatever is known of the column.
+    let (path, sums, open) = core::hint::black_box((path, sums, open));
     for (word, ((open, path), sum)) in open.iter_mut().zip(path).zip(sums).enumerate() {
         keep_loop();
         let lanes = lanes(word);
@@ -25,8 +27,6 @@ pub(super) fn second(
     (closed, winner): (usize, usize),
     least: impl FnOnce([&[u32]; 2]) -> u8,
 ) -> u8 {
-    // It is rarely asked for: its loops are not unrolled, whatever is known of the column where it is.
-    let sums = core::hint::black_box(sums);
     let count = sums.len();
     let [closed, below, around] =
         [closed, winner.saturating_sub(BESIDE), winner + BESIDE + 1].map(|place| before(place, count));

@@ -43,7 +43,7 @@ pub(super) fn most(penalties: &Penalties) -> u8 {
 
 impl Steps {
     /// For columns of so many words.
-    #[inline(always)]
+    #[inline(never)]
     pub fn new(penalties: &Penalties, words: usize) -> Self {
         let [little, more, much] = penalties
             .changes()

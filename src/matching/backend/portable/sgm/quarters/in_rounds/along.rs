@@ -1,10 +1,11 @@
 //! The paths along the row.
 
-use crate::matching::backend::portable::sgm::quarters::columns::words;
+use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::portable::sgm::quarters::columns::{column, words};
 use crate::matching::backend::portable::sgm::quarters::rounds;
 use crate::matching::backend::portable::sgm::quarters::steps::Steps;
 use crate::matching::backend::work::{Guide, PathWork};
-use crate::matching::memory::slices::{chunks, part, part_mut};
+use crate::matching::memory::slices::part;
 use crate::matching::memory::views::{view, view_mut};
 use core::cell::Cell;
 
@@ -38,14 +39,22 @@ impl Along {
 pub(super) fn right<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>, guide: Guide<'_>) {
     let count = words::<WORDS, ALL>(work);
     let mut path = Along::new(work, count);
-    let costs = chunks(view::<u8, u32>(work.costs), count);
+    let costs = view::<u8, u32>(work.costs);
     let columns = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
     let jumps = view_mut::<u32, u8>(work.workspace);
-    let mut none = [0; WORDS];
-    let mut from = Cell::from_mut(part_mut(&mut none, ..count)).as_slice_of_cells();
-    let mut before = 0;
-    let pixels = part(guide.here, ..work.width).iter().zip(jumps);
-    for ((&here, jump), (costs, to)) in pixels.zip(costs.zip(chunks(columns, count))) {
+    // Before the first pixel all cost nothing.
+    let Some(mut from) = column(columns, 0, count) else { return };
+    for path in from {
+        keep_loop();
+        path.set(0);
+    }
+    let (mut before, mut place) = (0, 0);
+    for (&here, jump) in part(guide.here, ..work.width).iter().zip(jumps) {
+        let (Some(costs), Some(to)) = (column(costs, place, count), column(columns, place, count)) else {
+            return;
+        };
+        place += count;
+        keep_loop();
         *jump = path.advance(here.abs_diff(before), costs, from, to) as u8;
         (before, from) = (here, to);
     }

@@ -6,7 +6,7 @@
 mod words;
 
 pub use stereopsis_rig::calibration::{
-    Calibration, CalibrationError, Cameras, Fault, RawCalibration, Reach, write_c, write_middlebury,
+    Calibration, CalibrationError, Cameras, Fault, RawCalibration, Reach, bytes, write_c, write_middlebury,
     write_opencv, write_rust,
 };
 pub use words::{Asked, describe, describe_rectified, warnings};

@@ -197,6 +197,37 @@ fn raw_frames_come_through_a_pipe() {
     assert!(text(&none.stderr).contains("standard input: holds no frame"), "{}", text(&none.stderr));
 }
 
+/// A pipe can be read once only, and many look at what a calibration says.
+#[cfg(unix)]
+#[test]
+fn a_calibration_comes_through_a_pipe() {
+    const KITTI: &str = "P0: 90 0 48 0 0 90 24 0 0 0 1 0\nP1: 90 0 48 -45 0 90 24 0 0 0 1 0\n";
+    let bench = Bench::new();
+    pairs(&bench);
+    let file = bench.put("calib.txt", KITTI.as_bytes()).display().to_string();
+    let [left, right] = ["left", "right"].map(|side| at(&bench, &format!("frames/{side}")));
+    let one = [left.clone() + "/f2.png", right.clone() + "/f2.png"];
+    for (case, ([left, right], more, depth)) in [
+        (one.clone(), None, "depth.pfm"),
+        (one, Some("--rectify"), "depth.pfm"),
+        ([left, right], None, "000003/depth.pfm"),
+    ]
+    .into_iter()
+    .enumerate()
+    {
+        let [by_file, by_pipe] = ["file", "pipe"].map(|by| at(&bench, &format!("{case}-{by}")));
+        let args = |calib, out| {
+            let args = ["--left", &*left, "--right", &*right, "--calib", calib, "--out", out];
+            args.into_iter().chain(more).collect::<Vec<_>>()
+        };
+        matched(&args(&file, &by_file));
+        let run = piped(&args("/dev/stdin", &by_pipe), KITTI.as_bytes());
+        assert!(run.status.success(), "case {case}: {}", text(&run.stderr));
+        let [by_file, by_pipe] = [by_file, by_pipe].map(|out| fs::read(format!("{out}/{depth}")));
+        assert!(by_pipe.expect("depths") == by_file.expect("depths"), "case {case}");
+    }
+}
+
 #[test]
 fn several_settings_are_shown_side_by_side() {
     let bench = Bench::new();

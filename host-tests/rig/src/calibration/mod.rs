@@ -27,7 +27,7 @@ pub use error::{CalibrationError, Fault};
 pub use middlebury::write_middlebury;
 pub use raw::RawCalibration;
 pub use reach::Reach;
-pub use source::{hold, release};
+pub use source::{bytes, hold, release};
 pub use write::{write_c, write_opencv, write_rust};
 
 use std::path::{Path, PathBuf};

@@ -32,8 +32,9 @@ fn held(path: &Path) -> Option<Vec<u8>> {
     held.iter().find(|(known, _)| known == path).map(|(_, bytes)| bytes.clone())
 }
 
-/// The bytes of a file or of a pipe; of one that is too long, one more than [`MOST_BYTES`].
-pub(super) fn bytes(path: &Path) -> Result<Vec<u8>, Fault> {
+/// The bytes of a calibration file, or of a pipe, which is read once for all who ask; of one that is too
+/// long, one more than [`CALIBRATION_BYTES`](crate::limits::CALIBRATION_BYTES).
+pub fn bytes(path: &Path) -> Result<Vec<u8>, Fault> {
     if let Some(bytes) = held(path) {
         return Ok(bytes);
     }

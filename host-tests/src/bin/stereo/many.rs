@@ -13,6 +13,7 @@ use serde_json::Value;
 use std::fmt::Write as _;
 use std::fs;
 use std::path::{Path, PathBuf};
+use stereopsis_host::calibration::{self, CalibrationError};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::limits;
 use stereopsis_host::output::Staging;
@@ -64,7 +65,11 @@ pub fn run(
     Staging::probe(&args.out)?;
     let settings = args.settings_text();
     let mut beside = Vec::new();
-    for path in args.files() {
+    for path in &args.calib {
+        let failed = |fault| CalibrationError { path: path.clone(), fault };
+        beside.extend(calibration::bytes(path).map_err(failed)?);
+    }
+    for path in args.masks() {
         let failed = |e| Failure::new(format!("{}: cannot be read ({e})", path.display()));
         beside.extend(limits::read(&path, limits::IMAGE_BYTES).map_err(failed)?);
     }
@@ -182,10 +187,10 @@ impl MatchArgs {
         format!("{:?}", (search, method, balance, calib, rectify, masks, options, depth, rig))
     }
 
-    /// The files that all pairs share.
-    fn files(&self) -> Vec<PathBuf> {
+    /// The files of masks that all pairs share.
+    fn masks(&self) -> impl Iterator<Item = PathBuf> {
         let masks = if self.rectify { None } else { self.masks.files(&self.calib) };
-        self.calib.iter().cloned().chain(masks.into_iter().flatten()).collect()
+        masks.into_iter().flatten()
     }
 }
 

@@ -17,8 +17,8 @@ use stereopsis::geometry::{
     robust::{RobustConfig, robust_fundamental},
     two_view::{Correspondence, Homography},
 };
+use stereopsis_host::calibration;
 use stereopsis_host::command_line::one_line;
-use stereopsis_host::limits;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::output::Staging;
 
@@ -125,7 +125,7 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
 
 /// Whether a file is the `rectified.json` of a pair that matches alone have aligned.
 pub fn is_uncalibrated(path: &Path) -> bool {
-    let text = limits::read(path, limits::CALIBRATION_BYTES).unwrap_or_default();
+    let text = calibration::bytes(path).unwrap_or_default();
     serde_json::from_slice::<Value>(&text)
         .is_ok_and(|found| found["calibration"].is_null() && found["homographies"].is_array())
 }

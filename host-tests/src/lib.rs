@@ -34,7 +34,8 @@
 //! * [`twin`]: each stage again, naively, to hold the core to. [`dump`]: its rows as files.
 //! * [`winners`]: a model of the block of gates, with faults.
 //! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
-//!   [`output`], [`report`]: results as files. [`live`]: the live page. [`command_line`]: errors in one line.
+//!   [`output`], [`report`]: results as files. [`unfinished`]: what an interruption takes away. [`live`]: the
+//!   live page. [`command_line`]: errors in one line.
 
 pub mod bal;
 pub mod calibrate;
@@ -73,6 +74,7 @@ pub mod run;
 pub mod sparsification;
 pub mod turned;
 pub mod two_view;
+pub mod unfinished;
 pub mod views;
 pub mod winners;
 

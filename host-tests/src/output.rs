@@ -6,6 +6,7 @@
 //!
 //! A result takes the place of a regular file or of none: [`check_place`].
 
+use crate::unfinished::{Unfinished, as_a_whole};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -117,6 +118,7 @@ pub struct Staging {
     target: PathBuf,
     names: Vec<String>,
     made: MadeFolders,
+    _unfinished: Unfinished,
 }
 
 impl Staging {
@@ -130,7 +132,9 @@ impl Staging {
             tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(target).map_err(|e| failed(plain(e)))?;
         let lock = File::create(files.path().join(LOCK)).map_err(failed)?;
         lock.lock().map_err(failed)?;
-        Ok(Self { files, _lock: lock, target: target.into(), names: Vec::new(), made })
+        let unfinished = Unfinished::begin(files.path(), &made.outermost_first);
+        let (target, names) = (target.into(), Vec::new());
+        Ok(Self { files, _lock: lock, target, names, made, _unfinished: unfinished })
     }
 
     /// Whether results could be written into `target`; leaves nothing behind. For asking before long work.
@@ -173,6 +177,13 @@ impl Staging {
     /// have written and this one did not: they go, so that the folder holds one run's results.
     pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
         self.sync()?;
+        as_a_whole(|| self.put_all(stale))?;
+        self.made.keep();
+        Ok(())
+    }
+
+    /// Moves all files to their places, or none.
+    fn put_all(&self, stale: &[&str]) -> Result<(), OutputError> {
         let mut moves = Moves { done: Vec::new() };
         let old = self.files.path().join("old");
         fs::create_dir(&old).map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
@@ -193,7 +204,6 @@ impl Staging {
             }
         }
         moves.done.clear();
-        self.made.keep();
         Ok(())
     }
 }

@@ -2,6 +2,7 @@
 
 use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, text};
 use std::process::{Command, Stdio};
+use std::time::Duration;
 
 const PLAIN: [&str; 7] = [
     "confidence.png",
@@ -102,6 +103,34 @@ fn what_an_interrupted_run_left_goes_and_what_is_being_written_stays() {
     lock.lock().expect("nobody else has it");
     bench.matched(&[]);
     assert!(!left.exists() && held.exists() && other.exists());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_run_leaves_nothing() {
+    let bench = Bench::new();
+    let before = bench.everything();
+    for signal in ["-INT", "-TERM"] {
+        // Whoever runs the tests may ignore signals, and the program goes on to.
+        let mut walk = Command::new("env");
+        walk.arg("--default-signal=INT,TERM,HUP").arg(program().get_program());
+        walk.args(["walk", "--frames", "2000", "--out"]).arg(bench.path("new/walk"));
+        let walk = walk.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+        let left = bench.path("new/walk/left");
+        // Until a frame is being written, or for a minute.
+        for _ in 0..600 {
+            let is_begun = left.is_dir() && !names(&left).is_empty();
+            std::thread::sleep(Duration::from_millis(100));
+            if is_begun {
+                break;
+            }
+        }
+        let sent = Command::new("kill").args([signal, &walk.id().to_string()]).status();
+        assert!(sent.expect("kill starts").success());
+        let run = walk.wait_with_output().expect("it ends");
+        assert_eq!(run.status.code(), Some(130), "{signal}: {}", text(&run.stderr));
+        assert!(before == bench.everything(), "{signal} left something behind");
+    }
 }
 
 #[test]

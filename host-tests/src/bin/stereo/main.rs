@@ -68,6 +68,7 @@ use std::io::{self, Write};
 use std::process::ExitCode;
 use stereopsis_host::command_line::{one_line, usage_line};
 use stereopsis_host::output::protect;
+use stereopsis_host::unfinished::remove_when_interrupted;
 
 /// What is told to one who names another command.
 const COMMANDS: &str = "the commands are demo, plan, match, eval, bench, calibrate, calib, rectify, \
@@ -182,6 +183,7 @@ enum Command {
 const USAGE: u8 = 2;
 
 fn main() -> ExitCode {
+    remove_when_interrupted();
     let outcome = match parse(std::env::args_os()) {
         Ok(command) => {
             protect(inputs::of(inputs::after_command(std::env::args_os().skip(1))));

@@ -17,7 +17,8 @@ pub(super) const fn gradient_shift(noise: Noise) -> u32 {
     }
 }
 
-/// The lines of both images: from the first on every so many-th one smoothed, each in one of the places.
+/// The lines of both images. Those whose number is a multiple of `every` are smoothed, each in one of the
+/// places.
 pub(super) fn denoise<'a>(
     lines: [&Rows5<'a>; 2],
     smoothed: &mut [Rows5<'a>; 2],

@@ -55,10 +55,10 @@ once_without_vectors! {
             rows |= reached << ROWS & Word::MIN.wrapping_sub(Word::from(count >= pixels));
             *kept = (count << (2 * ROWS) | rows & 0xff) as u16;
             let refused = rows & 1 << (ROWS + LOOK_AHEAD) == 0;
-            let left = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
+            let decided = Disparity::from_raw(answer.raw() | 0u16.wrapping_sub(u16::from(refused)));
             // What has no answer is no speckle.
-            *flags = flags.union(PixelFlags::SPECKLE.when(left != *answer));
-            *answer = left;
+            *flags = flags.union(PixelFlags::SPECKLE.when(decided != *answer));
+            *answer = decided;
         }
     }
 }

@@ -6,8 +6,9 @@ use crate::units::Disparity;
 /// Whether this is a microcontroller with vectors, of which the compiler makes use.
 pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
 
-/// Whether the compiler is kept from writing loops out.
-const KEEPS_LOOPS: bool = cfg!(not(stereopsis_simd));
+/// Whether the compiler is kept from writing loops out, as on all 32-bit cores. A desktop looks at many
+/// pixels at once instead.
+pub(in crate::matching) const KEEPS_LOOPS: bool = cfg!(not(stereopsis_simd));
 
 /// In the body of a loop: on 32-bit cores the loop is neither unrolled nor turned into vectors. Where a row's
 /// work is little, that would take more flash than it saves instructions.

@@ -8,7 +8,7 @@
 
 use super::open;
 use crate::imaging::Noise;
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{KEEPS_LOOPS, keep_loop};
 use crate::matching::backend::{FatteningWork, MethodParameters};
 use crate::matching::memory::slices::part;
 use crate::matching::method::Frame;
@@ -42,11 +42,16 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
         edges: frame.edges,
         bit: 1 << S::RADIUS_Y,
     };
-    row.refuse(0..row.answers.len(), RIGHT, u32::MAX);
+    row.refuse_all();
     if checks.open_margin > 0 {
         open::for_columns(frame.blocks, frame.width, &mut |place| row.refuse_at_ends(place));
     }
 }
+
+/// What no answer is nearer than before the first one of a row.
+const FIRST: i32 = i16::MAX as i32;
+/// Columns that are looked at together.
+const GROUP: usize = 16;
 
 /// The next column to the right: what is added to a column's number.
 const RIGHT: usize = 1;
@@ -68,26 +73,61 @@ impl Row<'_> {
         // A place without an edge at its end has no rim there.
         let is_at_edge = |x, way| self.without_edge(x, way, END + WIDEST) < END + WIDEST;
         if is_at_edge(end.saturating_sub(END), RIGHT) {
-            self.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY);
+            self.refuse(start.max(end.saturating_sub(REACH))..end, RIGHT, EMPTY, FIRST);
         }
         if is_at_edge(end.min(start + END).saturating_sub(1), LEFT) {
-            self.refuse(start..end.min(start + REACH), LEFT, EMPTY);
+            self.refuse(start..end.min(start + REACH), LEFT, EMPTY, FIRST);
         }
     }
 
+    /// Refuses the rims of all surfaces that begin in the row, seen to the right. On a desktop groups of
+    /// columns in which none can begin are passed over.
+    #[inline(always)]
+    fn refuse_all(&self) {
+        if KEEPS_LOOPS {
+            self.refuse(0..self.answers.len(), RIGHT, u32::MAX, FIRST);
+            return;
+        }
+        let mut nearest = FIRST;
+        for begin in (0..self.answers.len()).step_by(GROUP) {
+            let columns = begin..self.answers.len().min(begin + GROUP);
+            nearest = if self.none_begins(begin) {
+                let mut answers = part(self.answers, columns).iter().rev().map(number);
+                answers.find(|&answer| answer >= 0).map_or(nearest, nearest_behind)
+            } else {
+                self.refuse(columns, RIGHT, u32::MAX, nearest)
+            };
+        }
+    }
+
+    /// Whether no surface begins in a group of columns, by the columns before them alone.
+    #[inline(always)]
+    fn none_begins(&self, begin: usize) -> bool {
+        let before = self.answers.get(begin.wrapping_sub(1)..).and_then(|row| row.first_chunk::<GROUP>());
+        let here = self.answers.get(begin..).and_then(|row| row.first_chunk::<GROUP>());
+        let edges = self.edges.get(begin..).and_then(|row| row.first_chunk::<GROUP>());
+        let (Some(before), Some(here), Some(edges)) = (before, here, edges) else { return false };
+        let mut begins = false;
+        for i in 0..GROUP {
+            let [before, here] = [before, here].map(|row| row[i].get().raw() as i16);
+            let is_nearer = here > before.saturating_add(FatteningWork::TOLERANCE as i16);
+            begins |= is_nearer & (edges[i] & self.bit == 0);
+        }
+        !begins
+    }
+
     /// Refuses the rims of surfaces that begin in `columns`, seen one `way` along the row: so many columns
-    /// without answers are far ones.
+    /// without answers are far ones. No answer that is at most `nearest` begins a surface at first; what no
+    /// answer behind them does begins is returned.
     #[inline(never)]
-    fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: u32) {
+    fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: u32, mut nearest: i32) -> i32 {
         let first = columns.start;
         let answers = part(self.answers, columns);
         let mut x = if way == RIGHT { 0 } else { answers.len().wrapping_add(LEFT) };
-        // No answer is nearer than what stands before the first.
-        let (mut nearest, mut empty) = (i32::from(i16::MAX), 0);
+        let mut empty = 0;
         while let Some(answer) = answers.get(x) {
             keep_loop();
-            // No answer is less than any: -1.
-            let here = i32::from(answer.get().raw() as i16);
+            let here = number(answer);
             if here < 0 {
                 empty += 1;
                 nearest = if empty == far_when_empty { -1 } else { nearest };
@@ -95,10 +135,11 @@ impl Row<'_> {
                 if here > nearest && !self.has_edge(first + x) {
                     self.refuse_rim(first + x, way);
                 }
-                (nearest, empty) = (here + i32::from(FatteningWork::TOLERANCE), 0);
+                (nearest, empty) = (nearest_behind(here), 0);
             }
             x = x.wrapping_add(way);
         }
+        nearest
     }
 
     #[inline(always)]
@@ -145,6 +186,18 @@ impl Row<'_> {
     }
 }
 
+/// An answer as a number. No answer is less than any: -1.
+#[inline(always)]
+fn number(answer: &Cell<Disparity>) -> i32 {
+    i32::from(answer.get().raw() as i16)
+}
+
+/// What an answer behind this one has to be nearer than to begin a surface.
+#[inline(always)]
+fn nearest_behind(answer: i32) -> i32 {
+    answer + i32::from(FatteningWork::TOLERANCE)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -175,7 +228,7 @@ mod tests {
 
     /// Refuses the rims in these columns, seen in this way.
     fn rims(columns: Range<usize>, way: usize) -> impl Fn(&Row<'_>) {
-        move |row| row.refuse(columns.clone(), way, EMPTY)
+        move |row| _ = row.refuse(columns.clone(), way, EMPTY, FIRST)
     }
 
     #[test]

@@ -5,14 +5,13 @@
 //! from one register to the next a number is carried. What is held is how far a bound is below `u16::MAX`: so
 //! the zeros that are moved in stand for none.
 
+use super::bits::{TOGETHER as BLOCK, in_block};
 use super::half_words::HalfWords;
 use crate::matching::backend::portable::fattening::refuse_marked;
 use crate::matching::backend::work::FatteningWork;
 use crate::matching::memory::slices::{part, part_mut};
 use crate::units::Disparity;
 
-/// Pixels of a block.
-const BLOCK: usize = 64;
 /// How far below `u16::MAX` a bound is that no answer is beyond.
 const NO_BOUND: u16 = 0;
 
@@ -102,17 +101,6 @@ impl Block {
     fn bounds_of_no_edge(&self) -> [u16; BLOCK] {
         core::array::from_fn(|i| self.bounds[i] & !self.edges[i])
     }
-}
-
-/// What a row has in a block; behind its end `none`.
-#[inline(always)]
-fn in_block<T: Copy>(row: &[T], block: usize, none: T) -> [T; BLOCK] {
-    let row = part(row, block * BLOCK..);
-    row.first_chunk().copied().unwrap_or_else(|| {
-        let mut all = [none; BLOCK];
-        all.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
-        all
-    })
 }
 
 /// Marks the answers of a block that are beyond their bounds.

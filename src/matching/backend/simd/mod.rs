@@ -3,9 +3,11 @@
 //! * `sse2`, `avx2`, `avx512`, `neon`, `simd128`: registers, with what they have alike from `registers`;
 //!   `half_words`: numbers of two bytes in them.
 //! * `windows`, `columns`: sums over windows; `sgm`: costs along paths.
-//! * `smooth`, `edges`, `fattening`, `fill`: the filters of answers, pixels side by side.
+//! * `smooth`, `edges`, `fattening`, `fill`: the filters of answers, pixels side by side; `bits`: those that
+//!   are looked at together.
 //! * `x86`: code compiled for AVX2 and for AVX-512, chosen when the processor has it.
 
+mod bits;
 mod columns;
 mod edges;
 mod fattening;

@@ -1,5 +1,6 @@
 //! Pixels side by side: pair by pair, as far as both are still of the surface.
 
+use super::bits::{TOGETHER, each};
 use crate::matching::backend::loops::fill_row;
 use crate::matching::backend::portable::smooth::{MARGIN, RECIPROCALS, of_one};
 use crate::matching::config::Checks;
@@ -8,8 +9,6 @@ use crate::units::Disparity;
 
 /// Pixels worked on at a time.
 pub(super) const LANES: usize = 32;
-/// Answers whose ends are looked at together.
-const TOGETHER: usize = 64;
 /// Answers of a short surface.
 const SHORT: usize = 16;
 /// How far the answers around a pixel reach, to each side.
@@ -111,15 +110,6 @@ fn ends(group: &[u16; TOGETHER + 1], step: Disparity) -> u64 {
         }
     }
     ends
-}
-
-/// Does something with the place of each bit that is set, the lowest first.
-#[inline(always)]
-fn each(mut bits: u64, mut work: impl FnMut(usize)) {
-    while bits != 0 {
-        work(bits.trailing_zeros() as usize);
-        bits &= bits - 1;
-    }
 }
 
 /// For every answer how many its surface has: surface by surface.

@@ -15,6 +15,7 @@ use super::state_bytes::state_bytes;
 #[cfg(feature = "trace")]
 use super::trace::StageTrace;
 use crate::matching::memory::slices::part_mut;
+use crate::matching::memory::views::view_mut;
 use crate::units::{Disparity, PixelFlags};
 
 /// Disparities for lines up to `W` pixels and `D` disparities, in memory of its own and of fixed size.
@@ -29,7 +30,7 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     texture: [u16; W],
     textured: [u8; W],
     edges: [u8; W],
-    blocks: [u8; W],
+    blocks: InWords<[u8; W]>,
     band: [[Disparity; W]; BAND],
     band_flags: [[PixelFlags; W]; BAND],
     support: [u16; W],
@@ -45,6 +46,10 @@ pub struct Matcher<S: Method, const W: usize, const D: usize> {
     /// Lines taken, counting on below the image.
     pub(super) taken: usize,
 }
+
+/// What begins where a word may stand.
+#[repr(align(4))]
+struct InWords<T>(T);
 
 impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// How many lines after its own a row comes out: the rows that the method looks down, and those that the
@@ -73,7 +78,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: [0; W],
             textured: [0; W],
             edges: [0; W],
-            blocks: [0; W],
+            blocks: InWords([0; W]),
             band: [[Disparity::ZERO; W]; BAND],
             band_flags: [[PixelFlags::CLEAR; W]; BAND],
             support: [0; W],
@@ -260,7 +265,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             texture: part_mut(&mut self.texture, ..width),
             textured: part_mut(&mut self.textured, ..width),
             edges: part_mut(&mut self.edges, ..width),
-            blocks: &mut self.blocks,
+            blocks: view_mut(&mut self.blocks.0),
             support: part_mut(&mut self.support, ..width),
             band: Ring::new(self.band.as_flattened_mut(), width),
             flags: Ring::new(self.band_flags.as_flattened_mut(), width),

@@ -105,7 +105,7 @@ pub struct Frame<'a> {
     pub(super) edges: &'a mut [u8],
     /// Bits of blocks of four columns, in words of 32: those that are open, those that are refused as
     /// repeated, and those that repeat in each of the last three rows that were looked at.
-    pub(super) blocks: &'a mut [u8],
+    pub(super) blocks: &'a mut [u32],
     /// Support of each column's answers so far.
     pub(super) support: &'a mut [u16],
     /// Answers before the speckle filter.

@@ -8,7 +8,7 @@
 //! the same for every row.
 
 use crate::imaging::Noise;
-use crate::matching::backend::loops::{empty_row, fill_bytes, keep_scalar_loop};
+use crate::matching::backend::loops::{empty_row, fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::backend::{AnswerWork, Isa, Rules, answer_records};
 use crate::matching::config::Config;
 use crate::matching::memory::Rows5;
@@ -52,7 +52,7 @@ pub(super) fn make_answers<S: Method>(frame: &mut Frame<'_>, newest: usize, line
         let work = AnswerWork { winners, right, workspace, begin, pixels, rules, answers, flags };
         frame.backend.left_right::<S>(work);
     }
-    flag_first_column(config, answers, flags);
+    flag_first_column::<S>(config, answers, flags);
 }
 
 /// Of a method that compares the pixels of an offer, the left image's row from column `begin` on, and as much
@@ -70,12 +70,16 @@ pub(super) fn compared<'a, S: Method>(
 
 /// Flags the answers whose partner is the first column of the right image: of the candidates inside that
 /// image theirs is the last. Most of them stand for what the right camera does not see.
-fn flag_first_column(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
+fn flag_first_column<S: Method>(config: &Config, answers: &mut [Disparity], flags: &mut [PixelFlags]) {
     // Farther right the last candidate lies inside the image. At an end there is no fraction of a pixel.
     let columns = usize::from(config.disparities).min(answers.len());
     let mut end = u32::from(Disparity::from_pixels(config.min_disparity).raw());
     let refused = 0u16.wrapping_sub(u16::from(config.checks.refuse_ceiling));
     for (answer, flags) in part_mut(answers, ..columns).iter_mut().zip(flags) {
+        // Vectors pay where the rest of a row takes little.
+        if S::ALONG_PATHS {
+            keep_loop();
+        }
         keep_scalar_loop();
         if u32::from(answer.raw()) == end {
             *flags = flags.union(PixelFlags::CEILING);

@@ -18,7 +18,7 @@
 use super::confidence::has_margin;
 use super::fattening::least_gradient;
 use crate::matching::backend::Isa;
-use crate::matching::backend::loops::{fill_bytes, keep_loop};
+use crate::matching::backend::loops::{KEEPS_LOOPS, fill_bytes, keep_loop};
 use crate::matching::memory::Rows5;
 use crate::matching::memory::notes::Note;
 use crate::matching::memory::slices::{part, part_mut};
@@ -31,9 +31,9 @@ pub(super) const BLOCK: usize = 4;
 /// Blocks whose bits are in a word.
 const BLOCKS: usize = u32::BITS as usize;
 
-/// Bytes of a row's bits, in words.
+/// Words of a row's bits.
 pub(super) const fn words(width: usize) -> usize {
-    width.div_ceil(BLOCK * BLOCKS) * size_of::<u32>()
+    width.div_ceil(BLOCK * BLOCKS)
 }
 
 /// What makes the difference of two sums of pixels positive.
@@ -41,8 +41,8 @@ const MORE: u32 = 0x400;
 
 /// Forgets the frame before: above the first row all is open.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    let bytes = words(frame.width).min(frame.blocks.len());
-    fill_bytes(part_mut(frame.blocks, ..bytes), u8::MAX);
+    let words = words(frame.width).min(frame.blocks.len());
+    fill_bytes(part_mut(frame.blocks, ..words), u8::MAX);
 }
 
 /// Takes row `y` of the left image, whose edges are in; below the image all stays as it is.
@@ -55,9 +55,8 @@ pub(super) fn take_open(frame: &mut Frame<'_>, y: usize, lines: Option<[&Rows5<'
     {
         let [above, below] = [left[1], left[3]].map(|line| part(line, ..frame.width).as_chunks().0);
         let row = Smooth { above, below, edges: frame.edges.as_chunks().0 };
-        let words = frame.blocks.as_chunks_mut().0;
         let least = u32::from(least_gradient(frame.config.noise));
-        push(words.get_mut(..frame.width.div_ceil(BLOCK * BLOCKS)).unwrap_or_default(), &row, least);
+        push(part_mut(frame.blocks, ..words(frame.width)), &row, least);
     }
 }
 
@@ -76,19 +75,34 @@ impl Smooth<'_> {
         let blocks = |row| -> &[[u8; BLOCK]] { part(row, word * BLOCKS..) };
         let above = blocks(self.above);
         let above = part(above, ..above.len().min(BLOCKS));
+        let (below, edges) = (blocks(self.below), blocks(self.edges));
         let (mut bits, mut bit) = (0, 1u32);
-        for ((above, below), edges) in above.iter().zip(blocks(self.below)).zip(blocks(self.edges)) {
+        if !KEEPS_LOOPS
+            && let (Some(above), Some(below), Some(edges)) =
+                (above.first_chunk::<BLOCKS>(), below.first_chunk::<BLOCKS>(), edges.first_chunk::<BLOCKS>())
+        {
+            for i in 0..BLOCKS {
+                bits |= u32::from(is_smooth(&above[i], &below[i], &edges[i], least)) << i;
+            }
+            return bits;
+        }
+        for ((above, below), edges) in above.iter().zip(below).zip(edges) {
             keep_loop();
-            // Both differences are of 510 at most: with so much more neither borrows from the other.
-            let both = (sums(below) + MORE * 0x1_0001).wrapping_sub(sums(above));
-            let apart = both.wrapping_mul(0x1_0001) >> 16;
-            let is_even = apart.wrapping_sub(2 * MORE - (least - 1)) <= 2 * (least - 1);
-            let has_edge = u32::from_le_bytes(*edges) & 0x0101_0101 != 0;
-            bits |= bit & 0u32.wrapping_sub(u32::from(is_even & !has_edge));
+            bits |= bit & 0u32.wrapping_sub(u32::from(is_smooth(above, below, edges, least)));
             bit <<= 1;
         }
         bits
     }
+}
+
+/// Whether a block has no edge, and its pixels' sums in the rows above and below differ by less than `least`.
+#[inline(always)]
+fn is_smooth(above: &[u8; BLOCK], below: &[u8; BLOCK], edges: &[u8; BLOCK], least: u32) -> bool {
+    // Both differences are of 510 at most: with so much more neither borrows from the other.
+    let both = (sums(below) + MORE * 0x1_0001).wrapping_sub(sums(above));
+    let apart = both.wrapping_mul(0x1_0001) >> 16;
+    let is_even = apart.wrapping_sub(2 * MORE - (least - 1)) <= 2 * (least - 1);
+    is_even & (u32::from_le_bytes(*edges) & 0x0101_0101 == 0)
 }
 
 /// The sums of the even and of the odd pixels of a block, in a half-word each.
@@ -100,28 +114,25 @@ fn sums(block: &[u8; BLOCK]) -> u32 {
 
 /// Moves the open blocks one row on.
 #[inline(never)]
-fn push(open: &mut [[u8; 4]], row: &Smooth<'_>, least: u32) {
+fn push(open: &mut [u32], row: &Smooth<'_>, least: u32) {
     let mut is_joined = 0;
     for (number, open) in open.iter_mut().enumerate() {
         keep_loop();
         let smooth = row.word(number, least);
-        let to_right = filled(smooth, smooth & (u32::from_le_bytes(*open) | is_joined));
-        let all = filled_back(smooth, to_right);
-        *open = all.to_le_bytes();
-        is_joined = all >> (BLOCKS - 1);
+        let to_right = filled(smooth, smooth & (*open | is_joined));
+        *open = filled_back(smooth, to_right);
+        is_joined = *open >> (BLOCKS - 1);
     }
     // A word that a later one opens from its first block on.
     let mut is_joined = 0;
     for (number, open) in open.iter_mut().enumerate().rev() {
         keep_loop();
-        let mut all = u32::from_le_bytes(*open);
         // Blocks that are joined to an open last one are open already.
-        if is_joined > all >> (BLOCKS - 1) {
+        if is_joined > *open >> (BLOCKS - 1) {
             let smooth = row.word(number, least);
-            all |= filled_back(smooth, smooth & 1 << (BLOCKS - 1));
-            *open = all.to_le_bytes();
+            *open |= filled_back(smooth, smooth & 1 << (BLOCKS - 1));
         }
-        is_joined = all & 1;
+        is_joined = *open & 1;
     }
 }
 
@@ -149,16 +160,15 @@ fn filled_back(smooth: u32, seeds: u32) -> u32 {
 /// one another at once, so that a blank image takes hardly more than another one.
 // A function behind a pointer, so that this is there once.
 #[inline(never)]
-pub(super) fn for_columns(open: &[u8], width: usize, act: &mut dyn FnMut(Range<usize>)) {
-    let mut words = part(open, ..words(width)).as_chunks().0;
+pub(super) fn for_columns(open: &[u32], width: usize, act: &mut dyn FnMut(Range<usize>)) {
+    let mut words = part(open, ..words(width));
     // Mostly none is.
-    if words.iter().all(|word| *word == [0; 4]) {
+    if words.iter().all(|word| *word == 0) {
         return;
     }
     let (mut before, mut is_inside, mut begin, mut first) = (0, false, 0, 0);
-    while let Some((&word, others)) = words.split_first() {
-        let here = u32::from_le_bytes(word);
-        let after = others.first().map_or(0, |&word| u32::from_le_bytes(word));
+    while let Some((&here, others)) = words.split_first() {
+        let after = others.first().copied().unwrap_or(0);
         let bits = here | here << 1 | here >> 1 | before >> (BLOCKS - 1) | after << (BLOCKS - 1);
         // A bit where they begin, and where they have ended.
         let mut edges = bits ^ (bits << 1 | u32::from(is_inside));
@@ -229,10 +239,10 @@ mod tests {
         }
     }
 
-    fn bits(blocks: &[bool; COUNT]) -> [[u8; 4]; WORDS] {
+    fn bits(blocks: &[bool; COUNT]) -> [u32; WORDS] {
         core::array::from_fn(|word| {
             let bits = (0..BLOCKS).filter(|bit| blocks[word * BLOCKS + bit]).map(|bit| 1u32 << bit);
-            bits.sum::<u32>().to_le_bytes()
+            bits.sum()
         })
     }
 
@@ -261,6 +271,12 @@ mod tests {
                     let is_smooth = is_even && edges.iter().all(|edges| edges & 1 == 0);
                     let found = row.word(0, least as u32);
                     assert_eq!(found, u32::from(is_smooth), "{above:?} {below:?} {edges:?} {least}");
+                    // All of a word at once, every fifth of them without an edge.
+                    let some: [_; BLOCKS] = core::array::from_fn(|i| if i % 5 == 0 { [0; 4] } else { edges });
+                    let row = Smooth { above: &[above; BLOCKS], below: &[below; BLOCKS], edges: &some };
+                    let smooth = |i: usize| if i.is_multiple_of(5) { is_even } else { is_smooth };
+                    let all = (0..BLOCKS).fold(0, |bits, i| bits | u32::from(smooth(i)) << i);
+                    assert_eq!(row.word(0, least as u32), all, "{above:?} {below:?} {edges:?} {least}");
                 }
             }
         }
@@ -302,14 +318,14 @@ mod tests {
             let open: [bool; COUNT] = core::array::from_fn(|_| chance(rare) == 0);
             let mut counts = [0; COUNT * BLOCK];
             let words = words(width);
-            assert_eq!(words, width.div_ceil(BLOCK).div_ceil(32) * 4);
-            for_columns(bits(&open).as_flattened(), width, &mut |columns| {
+            assert_eq!(words, width.div_ceil(BLOCK).div_ceil(32));
+            for_columns(&bits(&open), width, &mut |columns| {
                 counts[columns].iter_mut().for_each(|count| *count += 1);
             });
             for (x, count) in counts.into_iter().enumerate() {
                 let block = x / BLOCK;
                 // What is beside the last word stands in no word of the row.
-                let last = words * 8 - 1;
+                let last = words * BLOCKS - 1;
                 let is_near = (block.saturating_sub(1)..=(block + 1).min(last)).any(|block| open[block]);
                 assert_eq!(count, u32::from(x < width && is_near), "{width}, column {x}");
             }

@@ -33,8 +33,6 @@ const LEAST_PERIOD: usize = 4;
 const LEAST_RUN: usize = 24;
 /// How many pixels are compared with those before them at once.
 const AT_ONCE: usize = if HAS_VECTORS { 16 } else { 4 };
-/// Bytes of a word of blocks.
-const WORD: usize = size_of::<u32>();
 /// The flag of answers on a pattern, of four pixels.
 const AMBIGUOUS: u32 = PixelFlags::AMBIGUOUS.bits() as u32 * 0x0101_0101;
 /// The flag of answers that were filled in, of four pixels.
@@ -49,8 +47,8 @@ fn is_asked<S: Method>(frame: &Frame<'_>) -> bool {
 
 /// Forgets the frame before.
 pub(super) fn begin(frame: &mut Frame<'_>) {
-    let bytes = words(frame.width).min(frame.blocks.len());
-    fill_bytes(part_mut(frame.blocks, bytes..), 0);
+    let words = words(frame.width).min(frame.blocks.len());
+    fill_bytes(part_mut(frame.blocks, words..), 0);
 }
 
 /// Takes row `y` of the left image; below the image all stays as it is.
@@ -61,30 +59,28 @@ pub(super) fn take_repeats<S: Method>(frame: &mut Frame<'_>, y: usize, lines: Op
         && y.is_multiple_of(EVERY)
     {
         let most = usize::from(frame.config.disparities) - 1;
-        let bytes = words(frame.width);
-        let (_, rest) = split_mut(frame.blocks, bytes);
-        let (twice, rest) = split_mut(rest, bytes);
-        let (latest, rest) = split_mut(rest, bytes);
-        let (before, rest) = split_mut(rest, bytes);
-        let [latest, before] = [latest, before].map(|bits| bits.as_chunks_mut().0);
-        let before_that = part_mut(rest, ..bytes).as_chunks_mut().0;
+        let words = words(frame.width);
+        let (_, rest) = split_mut(frame.blocks, words);
+        let (twice, rest) = split_mut(rest, words);
+        let (latest, rest) = split_mut(rest, words);
+        let (before, rest) = split_mut(rest, words);
+        let before_that = part_mut(rest, ..words);
         for ((latest, before), before_that) in latest.iter_mut().zip(&mut *before).zip(&mut *before_that) {
             keep_loop();
-            (*before_that, *before, *latest) = (*before, *latest, [0; WORD]);
+            (*before_that, *before, *latest) = (*before, *latest, 0);
         }
         mark(part(left[2], ..frame.width), most, frame.config.noise, latest);
         let three = latest.iter().zip(before).zip(before_that);
-        for (twice, ((a, b), c)) in twice.as_chunks_mut().0.iter_mut().zip(three) {
+        for (twice, ((a, b), c)) in twice.iter_mut().zip(three) {
             keep_loop();
-            let [a, b, c] = [*a, *b, *c].map(u32::from_le_bytes);
-            *twice = (a & b | (a | b) & c).to_le_bytes();
+            *twice = *a & *b | (*a | *b) & *c;
         }
     }
 }
 
 /// Sets the bits of the blocks where a line repeats itself within `most` pixels.
 #[inline(never)]
-fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [[u8; WORD]]) {
+fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [u32]) {
     let least = u32::from(least_gradient(noise));
     let slack = (least / 8 * 3) as u8;
     // Where brightness falls, it is turned round: so it is always the least value that is looked for.
@@ -118,7 +114,7 @@ fn mark(line: &[u8], most: usize, noise: Noise, blocks: &mut [[u8; WORD]]) {
 /// Sets the bits of the blocks where a line repeats itself among the pixels whose rises are `period` pixels
 /// apart, give or take `slack` in brightness. Most textures have far fewer of them than a pattern needs.
 #[inline(never)]
-fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, blocks: &mut [[u8; WORD]]) {
+fn mark_period(line: &[u8], pixels: Range<usize>, period: usize, slack: u8, blocks: &mut [u32]) {
     let least_run = LEAST_RUN.max(period + period / 2);
     if period == 0 || pixels.len() < least_run {
         return;
@@ -150,7 +146,7 @@ struct Runs<'a> {
     least_run: usize,
     /// Where the newest one begins.
     begin: usize,
-    blocks: &'a mut [[u8; WORD]],
+    blocks: &'a mut [u32],
 }
 
 impl Runs<'_> {
@@ -204,12 +200,12 @@ fn are_near(pixels: &[u8; AT_ONCE], others: &[u8; AT_ONCE], slack: u8) -> bool {
 
 /// Sets the bits of blocks.
 #[inline(never)]
-fn mark_blocks(of: Range<usize>, blocks: &mut [[u8; WORD]]) {
+fn mark_blocks(of: Range<usize>, blocks: &mut [u32]) {
     for (number, word) in blocks.iter_mut().enumerate() {
         keep_loop();
         // The bits from the first block on, and those from the end on.
         let from = |block: usize| u32::MAX.unbounded_shl(block.saturating_sub(32 * number) as u32);
-        *word = (u32::from_le_bytes(*word) | from(of.start) & !from(of.end)).to_le_bytes();
+        *word |= from(of.start) & !from(of.end);
     }
 }
 
@@ -224,7 +220,7 @@ pub(super) fn refuse_repeats<S: Method>(frame: &mut Frame<'_>, newest: usize) {
             let places = places.start.max(first)..places.end.max(first);
             let flags = part_mut(flags, places.clone());
             let words = view_mut::<PixelFlags, u32>(flags);
-            if words.len() * WORD == places.len() {
+            if size_of_val(words) == places.len() {
                 for word in words {
                     keep_scalar_loop();
                     *word |= AMBIGUOUS;
@@ -277,9 +273,9 @@ mod tests {
     use super::*;
 
     fn marked(line: &[u8], most: usize) -> u32 {
-        let mut blocks = [[0; WORD]];
+        let mut blocks = [0];
         mark(line, most, Noise::None, &mut blocks);
-        u32::from_le_bytes(blocks[0])
+        blocks[0]
     }
 
     #[test]

@@ -55,9 +55,9 @@ impl Texture<'_> {
             return;
         };
         let gradient = checks.texture_gradient;
-        let beside = line.iter().zip(line.iter().skip(2));
+        let beside = line.windows(3).map(|beside| (beside[0], beside[2]));
         let inner = self.history.iter_mut().zip(self.counts.iter_mut()).skip(1);
-        for ((word, count), (&left, &right)) in inner.zip(beside) {
+        for ((word, count), (left, right)) in inner.zip(beside) {
             keep_scalar_loop();
             go_on::<S>(word, count, left.abs_diff(right) >= gradient);
         }

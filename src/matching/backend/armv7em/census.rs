@@ -20,7 +20,7 @@ pub(super) fn census<S: WindowParameters>(rows: &Rows5<'_>, of_right: bool, out:
     if width < FEWEST || lines.iter().any(|line| line.len() < width) {
         let mut codes = [0; FEWEST];
         let codes = part_mut(&mut codes, ..width);
-        census_of_bytes::<S>(lines, codes);
+        census_of_bytes::<S>(lines, codes, 0);
         return out.iter_mut().zip(codes).for_each(|(out, code)| put(*code, of_right, out));
     }
     if let Some(inner) = out.get_mut(2..width - 2) {

@@ -6,7 +6,7 @@
 
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::part;
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::{view, view_mut};
 
 /// The highest bit of every byte.
@@ -24,15 +24,21 @@ pub(in crate::matching::backend) fn census<S: WindowParameters>(rows: &Rows5<'_>
     let in_words = |bytes: &[u8]| view::<u8, u32>(bytes).len() * 4 == width;
     if in_words(out) && lines.into_iter().all(in_words) {
         census_of_words::<S>(lines.map(view::<u8, u32>), view_mut::<u8, u32>(out));
+        census_of_bytes::<S>(lines, out, (width / 4).saturating_sub(1));
     } else {
-        census_of_bytes::<S>(lines, out);
+        census_of_bytes::<S>(lines, out, 0);
     }
 }
 
-/// The census row of lines that are not all in whole words, as those whose width is no multiple of four.
+/// The census row of lines that are not all in whole words, as those whose width is no multiple of four: of
+/// the groups of four pixels from the `first` on.
 #[inline(never)]
-pub(in crate::matching::backend) fn census_of_bytes<S: WindowParameters>(lines: [&[u8]; 3], out: &mut [u8]) {
-    for (group, out) in out.chunks_mut(4).enumerate() {
+pub(in crate::matching::backend) fn census_of_bytes<S: WindowParameters>(
+    lines: [&[u8]; 3],
+    out: &mut [u8],
+    first: usize,
+) {
+    for (group, out) in (first..).zip(part_mut(out, 4 * first..).chunks_mut(4)) {
         let x = 4 * group;
         let codes = codes::<S>(&lines.map(|line| [0, 2, 4].map(|place| word(line, x + place))));
         for (out, code) in out.iter_mut().zip(codes.to_le_bytes()) {
@@ -52,13 +58,12 @@ fn word(line: &[u8], x: usize) -> u32 {
     (x..x + 4).fold(0, |word, x| word >> 8 | u32::from(pixel(x)) << 24)
 }
 
-/// The census row of lines in whole words.
+/// The census row of lines in whole words, but for the last one.
 #[inline(always)]
 fn census_of_words<S: WindowParameters>(lines: [&[u32]; 3], out: &mut [u32]) {
     // Columns outside the line are the nearest inside it.
     let mut before = lines.map(|line| line.first().map_or(0, |first| (first & 0xff) * 0x0101_0101));
     let mut centre = lines.map(|line| line.first().copied().unwrap_or(0));
-    let last = lines.map(|line| line.last().map_or(0, |last| (last >> 24) * 0x0101_0101));
     // Rows are taken apart, not indexed: no optimiser has to prove that a row is there.
     let mut next = |after: Three| {
         let places = |before: u32, centre: u32, after: u32| {
@@ -69,12 +74,10 @@ fn census_of_words<S: WindowParameters>(lines: [&[u32]; 3], out: &mut [u32]) {
         (before, centre) = (centre, after);
         codes
     };
-    let Some((out_last, out)) = out.split_last_mut() else { return };
     let [above, here, below] = lines.map(|line| part(line, 1..));
     for (out, ((&above, &here), &below)) in out.iter_mut().zip(above.iter().zip(here).zip(below)) {
         *out = next([above, here, below]);
     }
-    *out_last = next(last);
 }
 
 /// The codes of four pixels, from the words around them: rows, and columns two to the left, here, two to the

@@ -66,8 +66,9 @@ const LANES: usize = if HAS_VECTORS { 8 } else { 16 };
 pub(in crate::matching::backend) fn median_in_rows(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
     let inner = out.len().saturating_sub(2);
     // The last group is moved back to end with the inner pixels.
-    let begins = (0..inner / LANES).map(|group| group * LANES).chain(inner.checked_sub(LANES));
-    for begin in begins {
+    let last = inner.saturating_sub(LANES);
+    for number in 0..if inner < LANES { 0 } else { inner.div_ceil(LANES) } {
+        let begin = last.min(number * LANES);
         let around = rows.map(|row| row.get(begin..).and_then(|r| r.first_chunk::<{ LANES + 2 }>()));
         let out = out.get_mut(begin + 1..).and_then(|o| o.first_chunk_mut::<LANES>());
         if let ([Some(above), Some(here), Some(below)], Some(out)) = (around, out) {
@@ -76,12 +77,11 @@ pub(in crate::matching::backend) fn median_in_rows(rows: [&[Disparity]; 3], out:
     }
     // The first and the last pixel, and all of a row that is shorter than a group.
     let grouped = if inner < LANES { 1 } else { 1 + inner };
-    for x in (0..1).chain(grouped..out.len()) {
+    let mut x = 0;
+    while let Some(out) = out.get_mut(x) {
         keep_loop();
-        let columns = [x.wrapping_sub(1), x, x + 1].map(|x| column(&rows, x));
-        if let Some(out) = out.get_mut(x) {
-            *out = of_columns(columns);
-        }
+        *out = of_columns([x.wrapping_sub(1), x, x + 1].map(|x| column(&rows, x)));
+        x = grouped.max(x + 1);
     }
 }
 

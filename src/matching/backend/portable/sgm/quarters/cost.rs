@@ -12,7 +12,7 @@ use crate::matching::backend::loops::keep_loop;
 use crate::matching::backend::parameters::SgmParameters;
 use crate::matching::backend::portable::sgm::features::Features;
 use crate::matching::backend::work::PathWork;
-use crate::matching::memory::slices::{chunks_mut, part, part_mut};
+use crate::matching::memory::slices::{part, part_mut};
 use crate::matching::memory::views::view_mut;
 use core::cell::Cell;
 
@@ -64,12 +64,12 @@ fn close<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>) {
     let beyond = (LANES * words).saturating_sub(work.disparities);
     if beyond > 0 {
         let (closed, margin) = (before(beyond, words), splat(margin(work.penalties).into()));
-        for column in chunks_mut(view_mut::<u8, u32>(work.costs), words) {
-            for (word, costs) in column.iter_mut().enumerate().take(beyond) {
-                keep_loop();
-                let lanes = closed(word);
-                *costs = *costs & !lanes | margin & lanes;
-            }
+        let mut word = 0;
+        for costs in view_mut::<u8, u32>(work.costs) {
+            keep_loop();
+            let lanes = closed(word);
+            *costs = *costs & !lanes | margin & lanes;
+            word = if word + 1 < words { word + 1 } else { 0 };
         }
     }
 }

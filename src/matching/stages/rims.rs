@@ -48,7 +48,7 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
     }
 }
 
-/// What no answer is nearer than before the first one of a row.
+/// What the first answer of a row is compared with: none is nearer, so that it begins no surface.
 const FIRST: i32 = i16::MAX as i32;
 /// Columns that are looked at together.
 const GROUP: usize = 16;
@@ -100,7 +100,8 @@ impl Row<'_> {
         }
     }
 
-    /// Whether no surface begins in a group of columns, by the columns before them alone.
+    /// Whether no surface begins in a group of columns, as far as the column before each tells: behind a gap
+    /// any answer may begin one.
     #[inline(always)]
     fn none_begins(&self, begin: usize) -> bool {
         let before = self.answers.get(begin.wrapping_sub(1)..).and_then(|row| row.first_chunk::<GROUP>());
@@ -117,8 +118,8 @@ impl Row<'_> {
     }
 
     /// Refuses the rims of surfaces that begin in `columns`, seen one `way` along the row: so many columns
-    /// without answers are far ones. No answer that is at most `nearest` begins a surface at first; what no
-    /// answer behind them does begins is returned.
+    /// without answers are far ones. The first answer begins a surface if it is nearer than `nearest`; what
+    /// the next one behind these columns is compared with is returned.
     #[inline(never)]
     fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: u32, mut nearest: i32) -> i32 {
         let first = columns.start;

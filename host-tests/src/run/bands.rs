@@ -64,30 +64,24 @@ impl Bands {
     }
 
     /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran
-    /// on. The threads stay, and begin each frame together.
+    /// on. The threads stay, and begin a frame together, as soon as the last one is done with the one before.
     pub(super) fn time(&mut self, frames: usize) -> Result<(Vec<f64>, Kernel), ConfigError> {
         // What cannot be done shows here.
         let kernel = self.run()?.kernel;
-        let together = Barrier::new(self.parts.len() + 1);
-        let times_ms = scope(|scope| {
-            scope.spawn(|| {
-                self.in_threads(|_, frame| {
-                    for _ in 0..=frames {
-                        together.wait();
-                        frame(&mut |row| _ = std::hint::black_box(row.disparities())).expect("it did before");
-                        together.wait();
-                    }
-                })
-            });
+        let together = Barrier::new(self.parts.len());
+        let times_ms = self.in_threads(|_, frame| {
+            together.wait();
+            let mut start = Instant::now();
             let time = |_| {
-                // Before they are let go: behind it some may be done already.
-                let start = Instant::now();
+                frame(&mut |row| _ = std::hint::black_box(row.disparities())).expect("it did before");
                 together.wait();
-                together.wait();
-                start.elapsed().as_secs_f64() * 1e3
+                let end = Instant::now();
+                end.duration_since(std::mem::replace(&mut start, end)).as_secs_f64() * 1e3
             };
             (0..=frames).map(time).skip(1).collect()
         });
+        // They meet after each frame: the times of one are those of all.
+        let times_ms = times_ms.into_iter().next().expect("a frame has a row");
         Ok((times_ms, kernel))
     }
 

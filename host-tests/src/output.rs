@@ -7,6 +7,7 @@
 //! A result takes the place of a regular file or of none: [`check_place`].
 
 use crate::unfinished::{Unfinished, as_a_whole};
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -125,14 +126,18 @@ impl Staging {
     /// Makes the target folder, with its parents, where it is missing, and checks that files can be made in
     /// it.
     pub fn new(target: &Path) -> Result<Self, OutputError> {
-        let made = MadeFolders::up_to(target)?;
-        remove_abandoned(target);
-        let failed = |source| OutputError::Folder { path: target.into(), source };
-        let files =
-            tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(target).map_err(|e| failed(plain(e)))?;
-        let lock = File::create(files.path().join(LOCK)).map_err(failed)?;
-        lock.lock().map_err(failed)?;
-        let unfinished = Unfinished::begin(files.path(), &made.outermost_first);
+        let make = || {
+            let made = MadeFolders::up_to(target)?;
+            remove_abandoned(target);
+            let failed = |source| OutputError::Folder { path: target.into(), source };
+            let files = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(target);
+            let files = files.map_err(|e| failed(plain(e)))?;
+            let lock = File::create(files.path().join(LOCK)).map_err(failed)?;
+            lock.lock().map_err(failed)?;
+            Ok((files, lock, made))
+        };
+        let ((files, lock, made), unfinished) =
+            Unfinished::begin(make, |(files, _, made)| (files.path().into(), made.outermost_first.clone()))?;
         let (target, names) = (target.into(), Vec::new());
         Ok(Self { files, _lock: lock, target, names, made, _unfinished: unfinished })
     }
@@ -155,6 +160,15 @@ impl Staging {
         out.into_inner().map_err(|e| failed(e.into_error()))?;
         self.names.push(name.to_owned());
         Ok(())
+    }
+
+    /// The files that are written, with their lengths in bytes.
+    pub fn lengths(&self) -> Result<BTreeMap<String, u64>, OutputError> {
+        let one = |name: &String| {
+            let failed = |source| OutputError::File { path: self.target.join(name), source };
+            Ok((name.clone(), fs::metadata(self.files.path().join(name)).map_err(failed)?.len()))
+        };
+        self.names.iter().map(one).collect()
     }
 
     /// Waits until the disk has all files, several at a time.

@@ -1,7 +1,7 @@
 //! What a run has not finished, taken away where somebody interrupts it.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -24,10 +24,17 @@ fn all() -> MutexGuard<'static, Vec<(PathBuf, Vec<PathBuf>)>> {
 pub(crate) struct Unfinished(PathBuf);
 
 impl Unfinished {
-    /// Files are written into a folder from now on; `made` are the folders that were made for it.
-    pub fn begin(files: &Path, made: &[PathBuf]) -> Self {
-        all().push((files.into(), made.into()));
-        Self(files.into())
+    /// Makes a folder that files are written into from now on, and `made` of it: the folder, and those that
+    /// were made for it. An interruption waits until it knows them.
+    pub fn begin<T, E>(
+        make: impl FnOnce() -> Result<T, E>,
+        made: impl FnOnce(&T) -> (PathBuf, Vec<PathBuf>),
+    ) -> Result<(T, Self), E> {
+        let mut all = all();
+        let begun = make()?;
+        let (files, folders) = made(&begun);
+        all.push((files.clone(), folders));
+        Ok((begun, Self(files)))
     }
 }
 

@@ -120,7 +120,9 @@ pub fn describe_rectified(calibration: &Calibration, size: Option<ImageSize>, as
     );
     let ImageSize { width, height } = size.unwrap_or(ImageSize { width: 0, height: 0 });
     depths(Rig { baseline_m: b, focal_px: f, offset_px, width, height }, asked, &mut text);
-    with_warnings(text, baseline_warning(b).into_iter().collect())
+    let off = size.and_then(|size| off_middle((cx.into(), cy.into()), size));
+    let off = off.map(|off| format!("{off}: was it made for images of another size?"));
+    with_warnings(text, baseline_warning(b).into_iter().chain(off).collect())
 }
 
 /// The depths that a rig tells, what limits it and what would help, in the words of a plan.
@@ -136,6 +138,21 @@ fn depths(rig: Rig, asked: &Asked, text: &mut String) {
     let reach = Reach { fb_px_m, offset_px, min_disparity: 0, disparities, sigma_px: Reach::SIGMA_PX };
     reach.describe(&DISTANCES_M, text);
     describe_search(&reach, rig.baseline_m, accuracy, text);
+}
+
+/// What is wrong with a principal point in the outer tenth of images of a size, or outside of them: it is
+/// most likely that of images of another size, which KITTI's files and OpenCV's matrices do not say.
+pub fn off_middle((cx, cy): (f64, f64), ImageSize { width, height }: ImageSize) -> Option<String> {
+    let is_inside = |c: f64, side: u16| {
+        let side = f64::from(side);
+        (0.1 * side..=0.9 * side).contains(&c)
+    };
+    (!is_inside(cx, width) || !is_inside(cy, height)).then(|| {
+        format!(
+            "its principal point ({cx:.1}, {cy:.1}) is not near the middle of the images, which are {width} x \
+             {height} px"
+        )
+    })
 }
 
 /// What looks wrong with a baseline, m.

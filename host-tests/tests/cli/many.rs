@@ -104,6 +104,11 @@ fn what_is_finished_is_not_done_again_unless_its_images_or_settings_differ() {
     assert_eq!(run(&[]), [false, true, false]);
     fs::remove_dir_all(bench.path("out/000003")).expect("a folder");
     assert_eq!(run(&[]), [false, false, true]);
+    // Results that are gone or cut off.
+    fs::remove_file(bench.path("out/000001/disparity.pfm")).expect("a result");
+    bench.put("out/000003/summary.json", b"");
+    assert_eq!(run(&[]), [true, false, true]);
+    assert_eq!(run(&[]), [false; 3]);
     assert_eq!(run(&["--filter", "strict"]), [true; 3]);
     assert_eq!(run(&["--filter", "strict"]), [false; 3]);
     // Fewer pairs than before.
@@ -121,22 +126,38 @@ fn what_is_finished_is_not_done_again_unless_its_images_or_settings_differ() {
 }
 
 #[test]
-fn a_run_that_failed_goes_on_where_it_ended() {
+fn a_pair_that_cannot_be_matched_is_named_and_the_others_are_matched() {
     let bench = Bench::new();
     pairs(&bench);
     let whole = fs::read(bench.path("frames/left/f9.png")).expect("an image");
-    bench.put("frames/left/f9.png", &whole[..whole.len() / 2]);
+    let cut = |name: &str| bench.put(&format!("frames/left/{name}.png"), &whole[..whole.len() / 2]);
+    cut("f9");
     let [left, right, out] = ["frames/left", "frames/right", "out"].map(|name| at(&bench, name));
     let args = ["match", "--left", &left, "--right", &right, "--out", &out, "--disparities", "32"];
     let run = stereo(args);
     let told = text(&run.stderr);
     assert_eq!(run.status.code(), Some(1), "{told}");
-    assert!(told.lines().last().is_some_and(|line| line.starts_with("stereo: 000002: ")), "{told}");
-    assert!(told.contains("f9.png") && told.contains("truncated"), "{told}");
-    assert_eq!(names(&bench.path("out")), ["000001"]);
+    assert!(told.ends_with("stereo: 1 of 3 pairs have no results: 000002\n"), "{told}");
+    let is_named = |line: &str| {
+        line.starts_with("stereo: 000002: ") && line.contains("f9.png") && line.contains("truncated")
+    };
+    assert!(told.lines().any(is_named), "{told}");
+    assert_eq!(names(&bench.path("out")), ["000001", "000003", "frames.csv"]);
+    let table = fs::read_to_string(bench.path("out/frames.csv")).expect("a table");
+    let lines: Vec<_> = table.lines().collect();
+    assert!(lines.len() == 4 && lines[2].contains(",,,,") && lines[2].contains("truncated"), "{table}");
     bench.put("frames/left/f9.png", &whole);
     let told = text(&stereo(args).stderr);
-    assert!(told.contains("000001 of 3 is there already") && told.contains("000003 of 3 is being"), "{told}");
+    assert!(told.contains("000002 of 3 is being") && told.contains("000003 of 3 is there already"), "{told}");
+
+    // What the first one fails of the others are not tried for.
+    cut("f2");
+    let other = at(&bench, "other");
+    let run = stereo(["match", "--left", &left, "--right", &right, "--out", &other, "--disparities", "32"]);
+    let told = text(&run.stderr);
+    assert_eq!((run.status.code(), told.lines().count()), (Some(1), 2), "{told}");
+    assert!(told.lines().last().is_some_and(|line| line.starts_with("stereo: 000001: ")), "{told}");
+    assert!(!bench.path("other").exists());
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Results appear together or not at all.
 
 use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, text};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 const PLAIN: [&str; 7] = [
@@ -110,12 +110,22 @@ fn what_an_interrupted_run_left_goes_and_what_is_being_written_stays() {
 fn an_interrupted_run_leaves_nothing() {
     let bench = Bench::new();
     let before = bench.everything();
-    for signal in ["-INT", "-TERM"] {
+    let walk = || {
         // Whoever runs the tests may ignore signals, and the program goes on to.
         let mut walk = Command::new("env");
         walk.arg("--default-signal=INT,TERM,HUP").arg(program().get_program());
         walk.args(["walk", "--frames", "2000", "--out"]).arg(bench.path("new/walk"));
-        let walk = walk.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts");
+        walk.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
+    };
+    let end = |walk: Child, signal: &str| {
+        let sent = Command::new("kill").args([signal, &walk.id().to_string()]).status();
+        assert!(sent.expect("kill starts").success());
+        let run = walk.wait_with_output().expect("it ends");
+        assert!(before == bench.everything(), "{signal} left something behind");
+        run
+    };
+    for signal in ["-INT", "-TERM"] {
+        let walk = walk();
         let left = bench.path("new/walk/left");
         // Until a frame is being written, or for a minute.
         for _ in 0..600 {
@@ -125,11 +135,14 @@ fn an_interrupted_run_leaves_nothing() {
                 break;
             }
         }
-        let sent = Command::new("kill").args([signal, &walk.id().to_string()]).status();
-        assert!(sent.expect("kill starts").success());
-        let run = walk.wait_with_output().expect("it ends");
+        let run = end(walk, signal);
         assert_eq!(run.status.code(), Some(130), "{signal}: {}", text(&run.stderr));
-        assert!(before == bench.everything(), "{signal} left something behind");
+    }
+    // While the folders are being made.
+    for tenths_ms in 0..60 {
+        let walk = walk();
+        std::thread::sleep(Duration::from_micros(100 * tenths_ms));
+        end(walk, "-INT");
     }
 }
 

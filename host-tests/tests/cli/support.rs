@@ -114,6 +114,7 @@ impl Bench {
             "are missing; give",
             "which is missing",
             "more than twice",
+            "is given twice",
             "give both or neither",
             "give --rectify too",
             "give --calib too",

@@ -129,6 +129,9 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
     if let Ok(rectified) = rectified
         && (raw.is_err() || rectified.rig.disparity_offset_px() != 0.0)
     {
+        if let Some(ImageSize { width, height }) = file.size {
+            rectified.check_size(width, height)?;
+        }
         let size = file.size.or(rectified.size());
         if let (None, Some(_)) = (size, asked.range_m) {
             return Err(Failure::usage("--size: is missing; the search for a range of depths takes it"));

@@ -9,6 +9,7 @@ use stereopsis::camera::{CameraPair, LineSource, StereoSource};
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::imaging::{GreyLines, NoiseMeter};
 use stereopsis::matching::Config;
+use stereopsis_host::calibration::off_middle;
 use stereopsis_host::limits::IMAGE_SIDE;
 use stereopsis_host::mock::MockCamera;
 
@@ -94,17 +95,8 @@ pub fn with_noise<C: StereoSource<Error: Display>>(
     Ok((options.method.with_filter(options.filter, Config { noise, ..config }), meter))
 }
 
-/// Files of KITTI do not say for which size they are: a principal point in the outer tenth of the pictures is
-/// of another one.
-pub fn fits(path: &Path, (cx, cy): (f64, f64), size: ImageSize) -> Result<(), Failure> {
-    let (width, height) = (f64::from(size.width), f64::from(size.height));
-    let inside = |c: f64, length: f64| (0.1 * length..=0.9 * length).contains(&c);
-    if inside(cx, width) && inside(cy, height) {
-        return Ok(());
-    }
-    Err(Failure::new(format!(
-        "{}: its principal point ({cx:.1}, {cy:.1}) is not near the middle of the frames, which are {width} \
-         x {height} px; give the calibration of frames of this size",
-        path.display()
-    )))
+/// Refuses a calibration whose principal point says that it is of images of another size.
+pub fn fits(path: &Path, centre: (f64, f64), size: ImageSize) -> Result<(), Failure> {
+    let refused = |why| Failure::new(format!("{}: {why}; give the calibration of this size", path.display()));
+    off_middle(centre, size).map_or(Ok(()), |why| Err(refused(why)))
 }

@@ -23,6 +23,7 @@ mod dump;
 mod eval;
 mod failure;
 mod features;
+mod finished;
 mod focus;
 mod frame;
 mod fundamental;

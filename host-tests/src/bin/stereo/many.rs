@@ -2,10 +2,11 @@
 //! settings differ.
 
 use crate::failure::Failure;
+use crate::finished::{FINISHED, Mark};
 use crate::match_args::MatchArgs;
 use crate::resume;
 use crate::shared::{print, remark};
-use crate::solve::{FINISHED, check_obstacles, solve};
+use crate::solve::{check_obstacles, solve};
 use crate::sources::Input;
 use crate::watch::{OVER_TIME, Watch};
 use serde::Serialize;
@@ -28,11 +29,11 @@ pub struct Line {
     frame: String,
     /// Its files.
     input: String,
-    density: f64,
+    density: Option<f64>,
     median_px: Option<f64>,
-    time_ms: f64,
-    state_bytes: u64,
-    /// What is wrong with the pair, as in its summary.json.
+    time_ms: Option<f64>,
+    state_bytes: Option<u64>,
+    /// What is wrong with the pair, as in its summary.json, or why it has no results.
     fault: Option<String>,
 }
 
@@ -43,20 +44,25 @@ impl Line {
         let failed = |e: &dyn std::fmt::Display| Failure::new(format!("{}: {e}", path.display()));
         let text = fs::read(&path).map_err(|e| failed(&e))?;
         let summary: Value = serde_json::from_slice(&text).map_err(|e| failed(&e))?;
-        let number = |name: &str| summary[name].as_f64().unwrap_or(f64::NAN);
         Ok(Self {
             frame,
             input,
-            density: number("density"),
+            density: summary["density"].as_f64(),
             median_px: summary["disparity_px"]["median"].as_f64(),
-            time_ms: number("time_ms"),
-            state_bytes: summary["state_bytes"].as_u64().unwrap_or(0),
+            time_ms: summary["time_ms"].as_f64(),
+            state_bytes: summary["state_bytes"].as_u64(),
             fault: summary["pair"]["fault"].as_str().map(str::to_owned),
         })
     }
+
+    /// Of a pair without results.
+    fn failed(frame: String, input: String, error: &Failure) -> Self {
+        let (density, median_px, time_ms, state_bytes) = (None, None, None, None);
+        Self { frame, input, density, median_px, time_ms, state_bytes, fault: Some(error.to_string()) }
+    }
 }
 
-/// Matches all of them.
+/// Matches all of them. A pair that cannot be is named, and the others are matched.
 pub fn run(
     args: &MatchArgs,
     inputs: impl Iterator<Item = Result<Input, Failure>>,
@@ -76,37 +82,58 @@ pub fn run(
     check_obstacles(args)?;
     let mut watch = args.watch.watch();
     let of = count.map_or(String::new(), |count| format!(" of {count}"));
-    let mut lines = Vec::new();
+    let (mut lines, mut failed) = (Vec::new(), Vec::new());
     for (number, input) in (1..).zip(inputs) {
         let input = input?;
         let frame = format!("{number:06}");
-        let out = args.out.join(&frame);
-        let content = fnv(input.bytes()?.iter().chain(&beside));
-        let mark = format!(
-            "{{\n  \"version\": {:?},\n  \"content\": \"{content:016x}\",\n  \"settings\": \
-             {settings:?}\n}}\n",
-            env!("CARGO_PKG_VERSION")
-        );
-        let is_done = fs::read_to_string(out.join(FINISHED)).is_ok_and(|found| found == mark);
+        let one = MatchArgs { out: args.out.join(&frame), ..args.clone() };
+        let mark = Mark::new(input.bytes()?.iter().chain(&beside), &settings);
+        let is_done = mark.is_in(&one.out);
         let what = if is_done { "is there already" } else { "is being matched" };
         if !args.quiet {
             remark(&format!("{frame}{of} {what}: {}", input.name()));
         }
-        let one = MatchArgs { out: out.clone(), ..args.clone() };
-        let named = |e: Failure| Failure::new(format!("{frame}: {e}"));
-        if !is_done {
-            let pair = input.open().map_err(named)?;
-            solve(&one, pair, Some(&mark), &format!("{frame}: "), watch.as_mut()).map_err(named)?;
-        } else if let Some(watch) = &mut watch {
-            resume::look_again(&one, &input, &frame, watch).map_err(named)?;
-        } else {
-            resume::forget(&out)?;
+        let mark = (!is_done).then_some(&mark);
+        match do_one(&one, &input, &frame, mark, watch.as_mut()) {
+            Ok(()) => lines.push(Line::of(&one.out, frame, input.name())?),
+            // What the first pair fails of the others are likely to fail of, too.
+            Err(error) if error.is_usage() || lines.is_empty() => {
+                return Err(Failure::new(format!("{frame}: {error}")));
+            }
+            Err(error) => {
+                remark(&format!("{frame}: {error}"));
+                lines.push(Line::failed(frame.clone(), input.name(), &error));
+                failed.push(frame);
+            }
         }
-        lines.push(Line::of(&out, frame, input.name())?);
     }
     write_table(&args.out, TABLE, &lines, None, watch.as_ref())?;
     note_earlier_runs(&args.out, lines.len());
-    tell(args, &lines, watch.as_ref())
+    tell(args, &lines, watch.as_ref())?;
+    if failed.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{} of {} pairs have no results: {}",
+        failed.len(),
+        lines.len(),
+        failed.join(", ")
+    )))
+}
+
+/// Matches a pair with its mark, or looks at one that is finished again.
+fn do_one(
+    args: &MatchArgs,
+    input: &Input,
+    frame: &str,
+    mark: Option<&Mark>,
+    watch: Option<&mut Watch>,
+) -> Result<(), Failure> {
+    match (mark, watch) {
+        (Some(_), watch) => solve(args, input.open()?, mark, &format!("{frame}: "), watch).map(drop),
+        (None, Some(watch)) => resume::look_again(args, input, frame, watch),
+        (None, None) => resume::forget(&args.out),
+    }
 }
 
 /// Says which finished folders stand behind those of a run of so many pairs.
@@ -156,14 +183,17 @@ pub fn tell(args: &MatchArgs, lines: &[Line], watch: Option<&Watch>) -> Result<(
     let longest = lines.iter().map(|line| line.frame.chars().count()).max().unwrap_or(0).max(6);
     let mut text = format!("{:<longest$} answered, % median, px  time, ms  state, bytes  images\n", "frame");
     for line in lines {
-        let median = line.median_px.map_or("-".to_owned(), |px| format!("{px:.2}"));
+        let number = |value: Option<f64>, digits: usize| {
+            value.map_or("-".to_owned(), |value| format!("{value:.digits$}"))
+        };
         let _ = writeln!(
             text,
-            "{:<longest$} {:11.1} {median:>10} {:9.1} {:13}  {}",
+            "{:<longest$} {:>11} {:>10} {:>9} {:>13}  {}",
             line.frame,
-            100.0 * line.density,
-            line.time_ms,
-            line.state_bytes,
+            number(line.density.map(|share| 100.0 * share), 1),
+            number(line.median_px, 2),
+            number(line.time_ms, 1),
+            line.state_bytes.map_or("-".to_owned(), |bytes| bytes.to_string()),
             one_line(&line.input)
         );
     }
@@ -172,11 +202,6 @@ pub fn tell(args: &MatchArgs, lines: &[Line], watch: Option<&Watch>) -> Result<(
     }
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
-}
-
-/// Fowler, Noll and Vo's hash, 1a, of 64 bits: the same in every version.
-fn fnv<'a>(bytes: impl Iterator<Item = &'a u8>) -> u64 {
-    bytes.fold(0xcbf2_9ce4_8422_2325, |hash, &byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 impl MatchArgs {
@@ -191,18 +216,5 @@ impl MatchArgs {
     fn masks(&self) -> impl Iterator<Item = PathBuf> {
         let masks = if self.rectify { None } else { self.masks.files(&self.calib) };
         masks.into_iter().flatten()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of the authors' page.
-    #[test]
-    fn hashes_are_the_published_ones() {
-        assert_eq!(fnv(b"".iter()), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(fnv(b"a".iter()), 0xaf63_dc4c_8601_ec8c);
-        assert_eq!(fnv(b"foobar".iter()), 0x8594_4171_f739_67e8);
     }
 }

@@ -43,7 +43,7 @@ pub fn run(args: &MatchArgs, input: &Input) -> Result<(), Failure> {
         ];
         let name = name.into_iter().flatten().collect::<Vec<_>>().join("-");
         if all.iter().any(|(other, _)| *other == name) {
-            return Err(Failure::new(format!("--settings: {name} is given twice")));
+            return Err(Failure::usage(format!("--settings: {name} is given twice")));
         }
         one.out = args.out.join(&name);
         all.push((name, one));

@@ -1,6 +1,7 @@
 //! A pair, rectified or raw, into a folder of results.
 
 use crate::failure::Failure;
+use crate::finished::{FINISHED, Mark};
 use crate::frame::{Matched, matched};
 use crate::input::Pair;
 use crate::look::{Look, look};
@@ -16,6 +17,7 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
+use stereopsis_host::calibration::off_middle;
 use stereopsis_host::masked::MaskedPair;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
@@ -23,9 +25,6 @@ use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
 use stereopsis_host::report::{Report, Summary};
 use stereopsis_host::rows::Rows;
 use stereopsis_host::scene::SceneCamera;
-
-/// What a folder that is finished says of its images and settings, of which there are many.
-pub const FINISHED: &str = "finished.json";
 
 /// What is written only of raw images.
 pub const RECTIFIED: [&str; 3] = ["rectified_left.png", "rectified_right.png", "rectified.json"];
@@ -45,7 +44,7 @@ struct Scene {
 pub fn solve(
     args: &MatchArgs,
     mut pair: Pair,
-    mark: Option<&str>,
+    mark: Option<&Mark>,
     label: &str,
     watch: Option<&mut Watch>,
 ) -> Result<(Summary, Option<RectifiedCameras>), Failure> {
@@ -65,6 +64,9 @@ pub fn solve(
         let valid = masks.as_ref().map(|masks| masks.each_ref());
         let Look { config, check, rows } =
             look(&args.search, &args.method, [&left, &right], valid, camera.as_ref(), || None)?;
+        let off = scale.as_ref().and_then(|scale| off_middle_of(args, scale, &pair));
+        pair.notes.extend(off.clone().filter(|_| check.is_none()));
+        let check = check.map(|check| check.with_warning(off));
         let matched = match masks {
             Some(masks) => {
                 matched(&args.method, &args.balance, config, &mut MaskedPair::new(&mut pair.camera, masks))?
@@ -110,11 +112,12 @@ pub fn solve(
         staging.write(right, |out| png(out, &scene.right))?;
         staging.write(cameras, |out| json(out, rectified))?;
     }
+    // Without what a watch sees, which another run may see anew.
+    if let Some(mark) = mark {
+        mark.write(&mut staging)?;
+    }
     if let Some(found) = &found {
         watch::write(&mut staging, OBSTACLES, found)?;
-    }
-    if let Some(mark) = mark {
-        staging.write(FINISHED, |out| out.write_all(mark.as_bytes()))?;
     }
     let stale = results::WITH_DEPTH.into_iter().chain(RECTIFIED).chain(OBSTACLES).chain([FINISHED]);
     let stale: Vec<_> = stale.collect();
@@ -126,6 +129,14 @@ pub fn solve(
         remark(&format!("{label}{line}"));
     }
     Ok((summary, scene.rectified))
+}
+
+/// What is wrong with a calibration that is most likely of images of another size.
+fn off_middle_of(args: &MatchArgs, scale: &DepthScale, pair: &Pair) -> Option<String> {
+    let (path, (cx, cy)) = (args.calib.first()?, scale.rig().principal_point());
+    let off = off_middle((cx.into(), cy.into()), ImageSize { width: pair.width, height: pair.height })?;
+    let path = path.display();
+    Some(format!("{path}: {off}: depths are wrong if it was made for images of another size"))
 }
 
 /// Whether obstacles, if they are asked for, can be found.

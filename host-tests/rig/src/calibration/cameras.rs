@@ -20,6 +20,7 @@ impl Cameras {
     /// [`Calibration::open`](super::Calibration::open) takes for a colour picture.
     pub fn open(paths: &[PathBuf]) -> Result<Self, CalibrationError> {
         let texts = load_all(paths)?;
+        raw::check_two(paths, &texts)?;
         let path = paths.first().cloned().unwrap_or_default();
         Self::read(&texts).map_err(|fault| CalibrationError { path, fault })
     }
@@ -27,6 +28,7 @@ impl Cameras {
     /// The first camera of such files, for which a file of one of KITTI's matrices is enough.
     pub fn open_first(paths: &[PathBuf]) -> Result<Camera<f64>, CalibrationError> {
         let texts = load_all(paths)?;
+        raw::check_two(paths, &texts)?;
         let path = paths.first().cloned().unwrap_or_default();
         let found = match texts.first().and_then(|text| kitti::alone(text)) {
             Some(found) => found.and_then(|(key, numbers)| camera(key, numbers)),

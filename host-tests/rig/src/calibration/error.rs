@@ -47,6 +47,12 @@ pub enum Fault {
     /// One camera's file of two.
     #[error("is the camera_info of one camera; give --calib a second time, with the other camera's")]
     OneOfTwo,
+    /// A file of both cameras that is given beside another one.
+    #[error("describes both cameras by itself; give it without a second --calib")]
+    Whole,
+    /// A file beside a camera_info of ROS that is none.
+    #[error("is no camera_info, as the other file is; give that of the other camera")]
+    NotTheOther,
     /// A calibration of raw images where one of rectified ones is needed.
     #[error(
         "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); give \

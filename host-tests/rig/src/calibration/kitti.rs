@@ -25,6 +25,14 @@ pub(super) fn is_one(text: &str) -> bool {
     labelled(text).next().is_some() || bare(text).is_some()
 }
 
+/// Whether the file has such matrices as numbers. `P1` in YAML is followed by a list or a mapping.
+pub(super) fn has_numbers_of_both(text: &str) -> bool {
+    let is_number = |matrix: Matrix<'_>| {
+        matrix.numbers.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok())
+    };
+    bare(text).is_some() || labelled(text).any(|(_, matrix)| is_number(matrix))
+}
+
 /// `P0: ...`, `P_rect_00: ...` or `P1_roi: ...`, with the camera's number; other labels (Tr, R_rect, ...) say
 /// nothing about a rectified pair. Of a file that says what the region of its images is, only those matrices.
 fn labelled(text: &str) -> impl Iterator<Item = (usize, Matrix<'_>)> {

@@ -88,7 +88,11 @@ pub(super) fn matrices(text: &str) -> Result<[(String, [f64; 5]); 2], Fault> {
 
 /// `[fx 0 cx; 0 fy cy; 0 0 1]`.
 fn camera<'a>(entry: &Entry<'a>) -> Result<Intrinsics<'a>, Fault> {
-    let [fx, _, cx, _, fy, cy, _, _, _] = numbers(entry.key, entry.line, &inside(entry))?;
+    let [fx, _, cx, _, fy, cy, last @ ..] = numbers::<9>(entry.key, entry.line, &inside(entry))?;
+    if last != [0.0, 0.0, 1.0] {
+        let problem = "its last row has to be 0 0 1, as in [f 0 cx; 0 f cy; 0 0 1]";
+        return Err(Fault::Key { key: entry.key.into(), problem: problem.into() });
+    }
     Ok(Intrinsics { key: entry.key, fx, fy, cx, cy })
 }
 

@@ -69,6 +69,7 @@ impl Calibration {
             return Err(CalibrationError { path, fault });
         }
         let texts = load_all(paths)?;
+        raw::check_two(paths, &texts)?;
         match Self::parse(paths, &texts, left_image, unit_m) {
             Ok(read) => Ok(Self { path, ..read }),
             Err(fault) => Err(CalibrationError { path, fault }),
@@ -131,6 +132,8 @@ fn load(path: &Path) -> Result<String, Fault> {
     if bytes.len() > source::MOST_BYTES || bytes.contains(&0) {
         return Err(Fault::NotText);
     }
+    // Some editors begin a file with the mark of its encoding.
+    let bytes = bytes.strip_prefix("\u{feff}".as_bytes()).map(<[u8]>::to_vec).unwrap_or(bytes);
     String::from_utf8(bytes).map_err(|_| Fault::NotText)
 }
 

@@ -75,6 +75,7 @@ impl RawCalibration {
             return read.map_err(|fault| CalibrationError { path: path.clone(), fault });
         }
         let texts = load_all(paths)?;
+        check_two(paths, &texts)?;
         let read = || -> Result<Self, Fault> {
             let found = find(paths, &texts, unit_m)?;
             let images = match (images, found.size) {
@@ -159,6 +160,26 @@ pub(super) fn cameras(texts: &[String]) -> Result<Option<[Camera<f64>; 2]>, Faul
         },
     };
     Ok(Some(both))
+}
+
+/// Refuses two files that do not go together.
+pub(super) fn check_two(paths: &[PathBuf], texts: &[String]) -> Result<(), CalibrationError> {
+    if texts.len() < 2 {
+        return Ok(());
+    }
+    let mut are_of_ros = Vec::new();
+    for (path, text) in paths.iter().zip(texts) {
+        let failed = |fault| Err(CalibrationError { path: path.clone(), fault });
+        if middlebury::is_one(text) || kitti::has_numbers_of_both(text) {
+            return failed(Fault::Whole);
+        }
+        match tree::read(text) {
+            Ok(trees) => are_of_ros.push(trees.iter().any(ros::is_one)),
+            Err(error) => return failed(Fault::Syntax(error)),
+        }
+    }
+    let odd = are_of_ros.iter().position(|is_one| !is_one).filter(|_| are_of_ros.contains(&true));
+    odd.map_or(Ok(()), |i| Err(CalibrationError { path: paths[i].clone(), fault: Fault::NotTheOther }))
 }
 
 fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Found, Fault> {

@@ -260,6 +260,24 @@ fn bad_matches() {
     for command in ["fundamental", "pose"] {
         bench.refused(&arguments(&bench, command, &[]), "no match moves");
     }
+    // On a line in both images, exactly and with noise.
+    for noise in [0.0, 0.2] {
+        let line = |i: u32| {
+            let (t, off) = (f64::from(i), noise * (f64::from(i * 7919 % 17) / 8.0 - 1.0));
+            format!(
+                "{},{},{},{}\n",
+                60.0 + 2.5 * t,
+                90.0 + 1.5 * t + off,
+                40.0 + 2.4 * t + off,
+                95.0 + 1.4 * t
+            )
+        };
+        let lines: String = (0..200).map(line).collect();
+        bench.put("m.csv", format!("x1,y1,x2,y2\n{lines}").as_bytes());
+        for (command, seed) in [("fundamental", "0"), ("pose", "0"), ("pose", "1"), ("pose", "2")] {
+            bench.refused(&arguments(&bench, command, &["--seed", seed]), "on a line");
+        }
+    }
     let missing = bench.path("none.csv").display().to_string();
     bench.refused(&["fundamental", "--matches", &missing, "--out", "answer.json"], "none.csv");
 }

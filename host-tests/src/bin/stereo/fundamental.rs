@@ -15,7 +15,7 @@ use stereopsis::geometry::{
     two_view::{Correspondence, Fundamental, eight_point},
 };
 use stereopsis_host::chance::log10_false_alarms;
-use stereopsis_host::degenerate::degenerate;
+use stereopsis_host::degenerate::{Degenerate, degenerate};
 use stereopsis_host::epipolar_picture::epipolar_picture;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::MockCamera;
@@ -163,6 +163,14 @@ fn images_of(
     Ok(images)
 }
 
+/// Refuses matches that agree, but lie on a line in an image: many matrices fit those.
+pub fn off_a_line(kept: &[Correspondence<f64>]) -> Result<(), String> {
+    match degenerate(kept) {
+        Some(line @ Degenerate::Line) => Err(line.to_string()),
+        _ => Ok(()),
+    }
+}
+
 /// Why matches have no fundamental matrix: what is special about them says more than that there is none.
 pub fn why(seen: &[Correspondence<f64>], error: &RobustError) -> String {
     let special = degenerate(seen).filter(|_| *error == RobustError::NoAgreement);
@@ -181,6 +189,9 @@ pub fn estimate(seen: &[Correspondence<f64>], args: &RobustArgs) -> Result<Estim
             let mut inliers = vec![false; seen.len()];
             let config = RobustConfig { seed: args.seed, ..RobustConfig::new(args.threshold) };
             let found = robust_fundamental(seen, &config, &mut inliers).map_err(|e| why(seen, &e))?;
+            let kept: Vec<_> =
+                seen.iter().zip(&inliers).filter(|&(_, &is_in)| is_in).map(|(s, _)| *s).collect();
+            off_a_line(&kept)?;
             let samples = Some((found.samples, found.miss_probability));
             Ok(Estimate { fundamental: found.fundamental, inliers, samples })
         }

@@ -1,7 +1,7 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
 use crate::failure::Failure;
-use crate::fundamental::{by_chance, why};
+use crate::fundamental::{by_chance, off_a_line, why};
 use crate::place::json_file;
 use crate::shared::{RobustArgs, TwoViewMethod, print, remark, rows};
 use clap::Args;
@@ -85,7 +85,9 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
     if sighted.is_empty() && blind > 0 {
         return Err(named(format!("the lenses' coefficients describe no sight for any of {blind} matches")));
     }
-    let (answer, rms) = solve(&sighted, &cameras, &args.robust).map_err(named)?;
+    // What fails on a line fails for that.
+    let solved = solve(&sighted, &cameras, &args.robust);
+    let (answer, rms) = solved.or_else(|why| off_a_line(&sighted).and(Err(why))).map_err(named)?;
     let mut answer = answer.among(&in_sight);
     // A zero's sign says nothing.
     answer.translation.iter_mut().for_each(|x| *x += 0.0);
@@ -172,6 +174,7 @@ fn solve(
     let Found { rms, essential, pose, inliers, model, .. } = best.ok_or(why)?;
     let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
     by_chance(seen, kept.len(), args)?;
+    off_a_line(&kept)?;
     // Exact matches have the noise of their digits.
     if let Some(degrees) = only_turned(&kept, &essential, [&first, &second], rms.max(0.01)) {
         return Err(format!("the camera has only turned, by {degrees:.2} degrees: there is no translation"));

@@ -8,6 +8,8 @@ use stereopsis::geometry::{
     rectify::{RowAlignment, RowHealth, RowMeter},
 };
 
+/// How far rows may be off before answers are lost, px.
+const BORNE_PX: f64 = 0.25;
 /// Standard deviations below its mean that a normal variable stays above with a probability of 95 %.
 const ONE_SIDED_95: f64 = 1.645;
 
@@ -87,12 +89,18 @@ impl Rows {
             "bad" => "bad: many answers are lost",
             good => good,
         };
-        format!("{:.2} px off (+- {:.2}), {health}", self.error_px, self.sigma_px)
+        let sure = if self.is_sure() { "" } else { ", but that is not sure" };
+        format!("{:.2} px off (+- {:.2}), {health}{sure}", self.error_px, self.sigma_px)
+    }
+
+    /// Whether with a probability of 95 % the rows are on that side of what matching bears.
+    fn is_sure(&self) -> bool {
+        (self.error_px - BORNE_PX).abs() >= ONE_SIDED_95 * self.sigma_px
     }
 
     /// What is wrong, where with a probability of 95 % it is more than matching bears.
     pub fn warning(&self) -> Option<String> {
-        let is_off = self.health != "good" && self.error_px - ONE_SIDED_95 * self.sigma_px > 0.25;
+        let is_off = self.error_px > BORNE_PX && self.is_sure();
         let turned = match self.pitch_deg {
             Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees"),
             None => {

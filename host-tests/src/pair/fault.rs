@@ -34,8 +34,8 @@ impl fmt::Display for PairFault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Swapped => {
-                "nearly everything lies farther to the right in the right image: the cameras are swapped; \
-                 exchange left and right"
+                "nearly everything lies farther to the right in the right image: the cameras are swapped, \
+                 or both images are upside down or mirrored; exchange left and right"
             }
             Self::Same => "the left and the right image are the same picture; give one of each camera",
             Self::Still => {
@@ -51,11 +51,12 @@ impl fmt::Display for PairFault {
             Self::RightMirrored => "the right image is mirrored; mirror it back",
             Self::RowsApart => {
                 "the right image stands over 12 px higher or lower than the left one: the pair is not \
-                 rectified; give --rectify with a calibration, or align it by rectify --matches"
+                 rectified, or not by the calibration of these cameras; give --rectify with that, or align \
+                 it by rectify --matches"
             }
             Self::TwoScenes => {
                 "the images have next to nothing in common: they show different scenes, or are far from \
-                 rectified; give a rectified pair, or --rectify with a calibration"
+                 rectified; give a rectified pair, or --rectify with the calibration of these cameras"
             }
         })
     }

@@ -10,6 +10,8 @@ pub(super) struct Lacks {
     pub over_exposed: f64,
     /// Those are black: 1 and less.
     pub under_exposed: f64,
+    /// The share of the whole picture that shows nothing.
+    pub masked: f64,
     /// Of each row, [`Self::untextured`].
     rows: Vec<f64>,
 }
@@ -20,7 +22,8 @@ impl Lacks {
         let is_shown = |x: u32, y: u32| valid.is_none_or(|valid| valid.get_pixel(x, y).0[0] != 0);
         let shown = |&(x, y, _): &(u32, u32, &image::Luma<u8>)| is_shown(x, y);
         let pixels = || picture.enumerate_pixels().filter(shown);
-        let all = pixels().count().max(1) as f64;
+        let count = pixels().count();
+        let (all, whole) = (count.max(1) as f64, f64::from(picture.width()) * f64::from(picture.height()));
         let share = |is_so: &dyn Fn(u8) -> bool| {
             pixels().filter(|(_, _, pixel)| is_so(pixel.0[0])).count() as f64 / all
         };
@@ -34,6 +37,7 @@ impl Lacks {
             untextured: rows.iter().map(|[flat, _]| flat).sum::<usize>() as f64 / all,
             over_exposed: share(&|pixel| pixel >= 254),
             under_exposed: share(&|pixel| pixel <= 1),
+            masked: 1.0 - count as f64 / whole,
             rows: rows.iter().map(|&[flat, shown]| flat as f64 / shown.max(1) as f64).collect(),
         }
     }

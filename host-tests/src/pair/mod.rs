@@ -43,6 +43,8 @@ pub struct PairCheck {
     pub lost_texture: f64,
     /// That of the right one, beside the left one.
     pub lost_texture_right: f64,
+    /// The share of the left picture that shows nothing, as its mask says.
+    pub masked: f64,
     /// About the share of the left picture that the right camera does not see; absent with few matches.
     pub out_of_view: Option<f64>,
     /// What is wrong with the pair and its search, and what would help: a line each.
@@ -96,6 +98,7 @@ impl PairCheck {
             under_exposed: of_both(|lacks| lacks.under_exposed),
             lost_texture: lacks[0].lost(&lacks[1]),
             lost_texture_right: lacks[1].lost(&lacks[0]),
+            masked: lacks[0].masked,
             out_of_view: range.and(at(0.5)).map(|d| (d / f64::from(pictures[0].width())).clamp(0.0, 1.0)),
             warnings: Vec::new(),
             before_search,

@@ -19,16 +19,21 @@ pub fn search(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<[u16; 
         let at = |share: f64| sorted.get((share * (sorted.len() - 1) as f64).round() as usize).copied();
         if sorted.len() < FEWEST { None } else { Some([at(ends[0])?, at(ends[1])?]) }
     };
-    let ranges = [range(&of_matches, [0.02, 0.98]), small_range(pictures)];
-    let all = || ranges.iter().flatten();
-    let first = all().map(|r| r[0]).min_by(f64::total_cmp)?;
-    let last = all().map(|r| r[1]).max_by(f64::total_cmp)?;
+    let of_matches = range(&of_matches, [0.02, 0.98]);
+    let most = f64::from(Config::MOST_DISPARITIES.min(width));
+    let both = [of_matches, small_range(pictures)].into_iter().flatten();
+    let both = both.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+    // Some answers of the smaller copy are wrong: where one search does not hold them, matches say more.
+    let [first, last] = of_matches.filter(|_| both[1] - both[0] >= most).unwrap_or(both);
     let more = 4.0 + (last - first) / 8.0;
+    let end = last + more;
     // From 0 on where that costs little: what is far has few features.
-    let first = if first - more < 32.0 { 0.0 } else { (first - more).floor() };
-    let count = ((last + more - first).max(1.0) as u16).next_multiple_of(16);
-    let most = Config::MOST_DISPARITIES.min(width.saturating_sub(first as u16)) & !15;
-    Some([first as u16, count.clamp(Config::FEWEST_DISPARITIES, most.max(Config::FEWEST_DISPARITIES))])
+    let begin = if first - more < 32.0 { 0.0 } else { (first - more).floor() };
+    // The margin before what is farthest is given up before anything that is near.
+    let begin = if end - begin > most { begin.max((end - most).min(first).floor()) } else { begin };
+    let count = ((end - begin).max(1.0) as u16).next_multiple_of(16);
+    let most = Config::MOST_DISPARITIES.min(width.saturating_sub(begin as u16)) & !15;
+    Some([begin as u16, count.clamp(Config::FEWEST_DISPARITIES, most.max(Config::FEWEST_DISPARITIES))])
 }
 
 /// The range of the disparities in a smaller copy of a pair, in pixels of the pair.

@@ -70,6 +70,9 @@ pub struct Summary {
     pub pair: Option<PairCheck>,
     /// How right the answers are, when the truth is known.
     pub accuracy: Option<Accuracy>,
+    /// The least confidence that an answer keeps.
+    #[serde(skip)]
+    min_confidence: u8,
 }
 
 /// What was made of grey levels: `gain grey + offset`.
@@ -89,6 +92,9 @@ impl Exposure {
         (balance != Balance::NONE).then_some(Self { gain, offset })
     }
 }
+
+/// The name of what was filled in.
+const FILLED: &str = "filled";
 
 /// Least, middle and largest value.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
@@ -138,7 +144,7 @@ pub struct Depth {
     pub png_clamped: usize,
     /// The depth beyond which answers are no points of `cloud.ply`, m; absent when all are.
     pub cloud_max_m: Option<f32>,
-    /// Answers that are so left out.
+    /// Answers that are so left out, those at infinity and behind among them.
     pub cloud_left_out: usize,
 }
 
@@ -208,6 +214,7 @@ impl Summary {
             rows: None,
             pair: None,
             accuracy,
+            min_confidence: config.min_confidence,
         }
     }
 
@@ -237,8 +244,11 @@ impl Summary {
             ("over-exposed", pair.over_exposed),
             ("under-exposed", pair.under_exposed),
             ("out of the right camera's view", pair.out_of_view.unwrap_or(0.0)),
+            ("outside of the masks", pair.masked),
         ];
-        let flags = self.flags.iter().map(|(&name, &count)| (name, count as f64 / pixels));
+        // What was filled is an answer.
+        let why = self.flags.iter().filter(|&(&name, _)| name != FILLED);
+        let flags = why.map(|(&name, &count)| (name, count as f64 / pixels));
         let list = |shares: Vec<(&str, f64)>| {
             let shares = shares.into_iter().filter(|(_, share)| *share >= 0.05);
             shares
@@ -249,8 +259,12 @@ impl Summary {
         let (lacks, flags) = (list(lacks.to_vec()), list(flags.collect()));
         (self.density < 0.5).then(|| {
             let lacks = if lacks.is_empty() { "textured, exposed and in view".to_owned() } else { lacks };
+            let asked = match self.min_confidence {
+                0 => String::new(),
+                least => format!("; --min-confidence {least} refuses what is less sure"),
+            };
             format!(
-                "only {:.1} % of the pixels have an answer; the picture is {lacks}; flags: {flags}",
+                "only {:.1} % of the pixels have an answer; the picture is {lacks}; flags: {flags}{asked}",
                 100.0 * self.density
             )
         })

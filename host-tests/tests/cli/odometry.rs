@@ -296,4 +296,11 @@ fn swapped_cameras_are_refused_unless_forced() {
     bench.refused(&args, "exchange left and right");
     args.push("--force");
     assert!(stereo(&args).status.success());
+    // One folder in the place of both.
+    for file in std::fs::read_dir(bench.path("swapped/left")).expect("a folder") {
+        let file = file.expect("a file");
+        std::fs::copy(file.path(), bench.path("swapped/right").join(file.file_name())).expect("a copy");
+    }
+    args.pop();
+    bench.refused(&args, "the same picture");
 }

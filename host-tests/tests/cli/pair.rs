@@ -26,6 +26,100 @@ fn swapped_cameras_are_refused_unless_forced() {
 }
 
 #[test]
+fn swapped_cameras_have_no_search_that_is_found() {
+    let bench = Bench::new();
+    let mut swapped = arguments(&bench, "b.png", "a.png", "auto");
+    bench.refused(&swapped, "exchange left and right");
+    swapped.push("--force".into());
+    bench.refused(&swapped, "give a number with --force");
+}
+
+#[test]
+fn a_search_keeps_what_is_near() {
+    // Everything is 210 to 380 px off, in images 800 px wide.
+    let bench = Bench::new();
+    let grey = |x: i64, y: u32| {
+        let bits =
+            (x as u64 / 3).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(y / 3).wrapping_mul(0xbf58_476d);
+        let bits = (bits ^ (bits >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        image::Luma([(bits >> 40) as u8])
+    };
+    let disparity = |y: u32| 210 + i64::from(y / 40 * 34);
+    let picture =
+        |by: i64| image::GrayImage::from_fn(800, 240, |x, y| grey(i64::from(x) + by * disparity(y), y));
+    picture(0).save(bench.path("l.png")).expect("a picture");
+    picture(1).save(bench.path("r.png")).expect("a picture");
+    let run = stereo(arguments(&bench, "l.png", "r.png", "auto"));
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let summary = json(&bench.path("out/summary.json"));
+    let [first, count] =
+        ["min_disparity", "disparities"].map(|name| summary[name].as_i64().expect("a number"));
+    assert!(first <= 210 && first + count > 380, "{first}, {count}: {}", text(&run.stderr));
+}
+
+#[test]
+fn a_calibration_of_another_size_is_said() {
+    let bench = Bench::new();
+    let mut args = arguments(&bench, "a.png", "b.png", "64");
+    let (width, height) = (f64::from(Scene::demo().width()), f64::from(Scene::demo().height()));
+    let kitti = |cx: f64, cy: f64| {
+        format!("P0: 500 0 {cx} 0 0 500 {cy} 0 0 0 1 0\nP1: 500 0 {cx} -50 0 500 {cy} 0 0 0 1 0\n")
+    };
+    let calib = bench.put("calib.txt", kitti(width / 2.0, height / 2.0).as_bytes()).display().to_string();
+    args.extend(["--calib".to_owned(), calib.clone()]);
+    let said = |args: &[String]| text(&stereo(args).stderr);
+    assert!(said(&args).is_empty());
+    bench.put("calib.txt", kitti(width, height).as_bytes());
+    assert!(said(&args).contains("calib.txt: its principal point"), "{}", said(&args));
+    let warnings = json(&bench.path("out/summary.json"))["pair"]["warnings"].to_string();
+    assert!(warnings.contains("images of another size"), "{warnings}");
+    let size = format!("{width}x{height}");
+    let check = text(&stereo(["calib", "check", "--calib", &calib, "--size", &size]).stdout);
+    assert!(check.contains("warning: the left principal point"), "{check}");
+    let q = "Q: [[1, 0, 0, -319.5], [0, 1, 0, -239.5], [0, 0, 0, 500], [0, 0, 12.5, 0]]\n";
+    let q = bench.put("q.yml", q.as_bytes()).display().to_string();
+    let check = text(&stereo(["calib", "check", "--calib", &q, "--size", "100x100"]).stdout);
+    assert!(check.contains("warning: its principal point"), "{check}");
+    bench.put("calib.txt", super::support::calibration(96, 48).as_bytes());
+    bench.refused(&["calib", "check", "--calib", &calib, "--size", &size], "width says 96");
+}
+
+#[test]
+fn calibrations_that_do_not_go_together_are_refused() {
+    let bench = Bench::new();
+    let put = |name: &str, content: &str| bench.put(name, content.as_bytes()).display().to_string();
+    let ros = |cx: &str| {
+        let k = format!("[100, 0, {cx}, 0, 100, 24, 0, 0, 1]");
+        format!(
+            "image_width: 96\nimage_height: 48\ncamera_matrix: {{rows: 3, cols: 3, data: {k}}}\n\
+             distortion_model: plumb_bob\ndistortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}\n\
+             rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}\n\
+             projection_matrix: {{rows: 3, cols: 4, data: [100, 0, 48, 0, 0, 100, 24, 0, 0, 0, 1, 0]}}\n"
+        )
+    };
+    let whole = put("whole.txt", &super::support::calibration(96, 48));
+    let marked = put("marked.txt", &format!("\u{feff}{}", super::support::calibration(96, 48)));
+    let [one, broken, not_ros] =
+        [("one.yaml", ros("48")), ("broken.yaml", ros("[")), ("not.yaml", "a: 1\n".into())]
+            .map(|(name, content)| put(name, &content));
+    let with = |first: &str, second: Option<&str>| {
+        let second = second.map(|second| ("--calib", second));
+        let mut args = bench.arguments(&[("--calib", first)]);
+        args.extend(second.into_iter().flat_map(|(option, file)| [option.to_owned(), file.to_owned()]));
+        args
+    };
+    bench.refused(&with(&whole, Some(&one)), "whole.txt: describes both cameras by itself");
+    bench.refused(&with(&one, Some(&whole)), "whole.txt: describes both cameras by itself");
+    bench.refused(&with(&one, Some(&broken)), "broken.yaml: is not well-formed");
+    bench.refused(&with(&one, Some(&not_ros)), "not.yaml: is no camera_info");
+    bench.refused(&with(&one, None), "one.yaml: is the camera_info of one camera");
+    let run = stereo(with(&marked, None));
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let scaled = put("scaled.txt", &super::support::calibration(96, 48).replace("0 0 1]", "0 0 2]"));
+    bench.refused(&with(&scaled, None), "cam0: its last row has to be 0 0 1");
+}
+
+#[test]
 fn the_same_picture_twice_is_said() {
     let bench = Bench::new();
     let run = stereo(arguments(&bench, "a.png", "a.png", "64"));
@@ -125,6 +219,8 @@ fn depths_and_colours_come_without_a_file() {
     let narrow: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), "0:32".into()]).collect();
     let light = |picture: &image::RgbImage| picture.iter().map(|&c| u64::from(c)).sum::<u64>();
     assert!(light(&coloured(&narrow)) > light(&given));
+    let below: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), "-8:64".into()]).collect();
+    assert!(light(&coloured(&below)) > light(&given));
     for wrong in ["64:0", "1", "a:b", "0:0"] {
         let wrong: Vec<_> = args.iter().cloned().chain(["--colour-range".into(), wrong.into()]).collect();
         assert_eq!(stereo(&wrong).status.code(), Some(2));
@@ -210,4 +306,20 @@ fn few_answers_are_explained() {
     let run = stereo(arguments(&bench, "left.png", "covered.png", "64"));
     let said = text(&run.stderr);
     assert!(said.contains("100 % without texture in the right image; flags"), "{said}");
+    // What was asked for, and masks that show little.
+    let mut asked = arguments(&bench, "a.png", "b.png", "64");
+    asked.extend(["--min-confidence", "207"].map(String::from));
+    let said = text(&stereo(&asked).stderr);
+    assert!(
+        said.contains("--min-confidence 207 refuses what is less sure") && !said.contains("filled"),
+        "{said}"
+    );
+    let mut masked = arguments(&bench, "a.png", "b.png", "64");
+    let (width, height) = image::image_dimensions(bench.path("a.png")).expect("a picture");
+    image::GrayImage::new(width, height).save(bench.path("nothing.png")).expect("a mask");
+    for side in ["--valid-left", "--valid-right"] {
+        masked.extend([side.to_owned(), bench.path("nothing.png").display().to_string()]);
+    }
+    let said = text(&stereo(&masked).stderr);
+    assert!(said.contains("100 % outside of the masks"), "{said}");
 }

@@ -244,6 +244,13 @@ fn swapped_cameras_are_refused_unless_forced() {
         assert!(forced.status.success() && text(&forced.stderr).contains("swapped"));
         fs::remove_dir_all(&out).expect("results");
     }
+    // Lines that never come say nothing of the cameras.
+    run(&["record", "--left", &l, "--right", &r, "--faults", "1", "--out", &file]);
+    let lost = ["replay", "--from", &file, "--method", "fast", "--out", &out, "--disparities"];
+    bench.refused(&[&lost[..], &["auto"]].concat(), "the first frames show nothing");
+    let lost = stereo([&lost[..], &["64"]].concat());
+    assert!(lost.status.success() && lost.stderr.is_empty(), "{}", text(&lost.stderr));
+    fs::remove_dir_all(&out).expect("results");
     // The same cameras in their order.
     run(&["record", "--left", &r, "--right", &l, "--faults", "0.02", "--out", &file]);
     let replay = |options: &[&str]| {

@@ -120,6 +120,12 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     }
     staging.commit(&WITH_DEPTH)?;
 
+    if result.answers() == 0 {
+        remark(
+            "warning: nothing is sharper in one frame than in the others; give frames of one scene with \
+             texture, each focused at another distance",
+        );
+    }
     let share = 100.0 * result.answers() as f64 / result.peaks.len().max(1) as f64;
     let mut text =
         format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", kept.len());

@@ -95,15 +95,20 @@ pub fn disparities(text: &str) -> Result<Disparities, String> {
     shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
-/// Refuses a pair of swapped cameras; `exchanged` is what the pictures would be if the cameras were exchanged
+/// Refuses a pair of swapped cameras, or the picture of one twice; `exchanged` is what the pictures would be if the cameras were exchanged
 /// before they are rectified.
-pub fn refuse_swapped(
+pub fn refuse_unpaired(
     pictures: [&GrayImage; 2],
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<(), Failure> {
     // Where nothing is found nothing is said.
     let Ok(matches) = PairMatches::find(pictures, None) else { return Ok(()) };
     let fault = pair::fault(pictures, &matches);
+    let first = pictures[0].as_raw().first();
+    // A camera may begin in the dark.
+    if fault == Some(PairFault::Same) && pictures[0].iter().any(|grey| Some(grey) != first) {
+        return Err(Failure::new(format!("{}, or give --force", PairFault::Same)));
+    }
     if is_swapped(fault, pictures[0].width(), &matches, exchanged) { Err(swapped()) } else { Ok(()) }
 }
 
@@ -160,6 +165,12 @@ pub fn look(
     }
     let [first, count] = match args.disparities {
         Disparities::Count(count) => [args.min_disparity.unwrap_or(0), count],
+        Disparities::Auto if args.force && fault == Some(PairFault::Swapped) => {
+            return Err(Failure::new(
+                "--disparities auto: the cameras seem to be swapped, and what they search is not known; give \
+                 a number with --force",
+            ));
+        }
         Disparities::Auto => searched(pictures, matches.as_ref(), fault, args.min_disparity)?,
     };
     let range = RangeArgs { disparities: count, min_disparity: first };

@@ -40,7 +40,7 @@ pub struct MatchArgs {
     pub depth: DepthArgs,
     /// Disparities from the darkest to the brightest colour of disparity_colour.png, px, as 0:64: those
     /// searched where none are given
-    #[arg(long, value_name = "A:B", value_parser = colour_range, allow_negative_numbers = true)]
+    #[arg(long, value_name = "A:B", value_parser = colour_range, allow_hyphen_values = true)]
     pub colour_range: Option<ColourScale>,
     #[command(flatten)]
     pub watch: ObstacleArgs,

@@ -5,7 +5,7 @@ mod summary;
 use crate::failure::Failure;
 use crate::image_files::gap;
 use crate::input::fits;
-use crate::look::refuse_swapped;
+use crate::look::refuse_unpaired;
 use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::rig::warn_of;
@@ -134,7 +134,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
         && !args.force
     {
-        refuse_swapped([&left, &right], || exchanged(&sequence, cameras.rectification.as_ref()?))?;
+        refuse_unpaired([&left, &right], || exchanged(&sequence, cameras.rectification.as_ref()?))?;
     }
     let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
     if let Some([before, after]) = gap(&files) {

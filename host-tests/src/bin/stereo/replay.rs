@@ -4,7 +4,7 @@ mod summary;
 mod watching;
 
 use crate::failure::Failure;
-use crate::look::{self, Look, SearchArgs};
+use crate::look::{self, Disparities, Look, SearchArgs};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::scale::camera;
@@ -173,9 +173,17 @@ fn look(
     let black = [(); 2].map(|()| GrayImage::new(width.into(), height.into()));
     let pair = pairs.into_iter().max_by_key(features).unwrap_or(black);
     let camera = scale.and_then(|scale| camera(scale.rig()));
+    let came = pair.iter().any(|picture| picture.iter().any(|&grey| grey > 0));
+    if !came && args.search.disparities == Disparities::Auto {
+        return Err(Failure::new(
+            "--disparities auto: the first frames show nothing, or none of their lines came; give a number",
+        ));
+    }
     let look = look::look(&args.search, &options, pair.each_ref(), None, camera.as_ref(), || None)?;
     // In the sky obstacles are asked to be sure.
-    Ok(Look { config: Config { confidence: args.watch.obstacles, ..look.config }, ..look })
+    let config = Config { confidence: args.watch.obstacles, ..look.config };
+    // What never came says nothing of the cameras.
+    Ok(Look { config, check: look.check.filter(|_| came), rows: look.rows.filter(|_| came) })
 }
 
 fn play(

@@ -53,12 +53,11 @@ impl DepthFiles {
         let mut points = points(map, scale, left);
         if let Some(depth) = &mut summary.depth {
             let max_m = args.max_depth.or(depth.cloud_max_m);
-            let all = points.len();
             points.retain(|point| max_m.is_none_or(|max_m| point.position_m[2] <= max_m));
             depth.png_unit_m = unit_m;
             depth.png_clamped = clamped;
             depth.cloud_max_m = max_m;
-            depth.cloud_left_out = all - points.len();
+            depth.cloud_left_out = map.answers() - points.len();
         }
         Self { metres: map.depth_m(scale), samples, points }
     }
@@ -149,14 +148,12 @@ pub fn figures(summary: &Summary) -> String {
             depth.png_clamped
         );
     }
-    if let Some((depth, most_m)) = s
-        .depth
-        .as_ref()
-        .filter(|depth| depth.cloud_left_out > 0)
-        .and_then(|depth| Some((depth, depth.cloud_max_m?)))
-    {
-        let left_out = depth.cloud_left_out;
-        let _ = writeln!(text, "cloud.ply    without {left_out} answers beyond {most_m:.3} m (--max-depth)");
+    if let Some(depth) = s.depth.as_ref().filter(|depth| depth.cloud_left_out > 0) {
+        let where_from = match depth.cloud_max_m {
+            Some(most_m) => format!("beyond {most_m:.3} m (--max-depth)"),
+            None => "at infinity or behind".to_owned(),
+        };
+        let _ = writeln!(text, "cloud.ply    without {} answers {where_from}", depth.cloud_left_out);
     }
     let _ = writeln!(
         text,

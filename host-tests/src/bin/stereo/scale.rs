@@ -28,7 +28,10 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
     }
     match args.calib.len() {
         0 if args.depth.depth_unit.is_some() || args.depth.max_depth.is_some() => {
-            return Err(Failure::usage("--depth-unit, --max-depth: are of depths; give --calib too"));
+            let option = if args.depth.depth_unit.is_some() { "--depth-unit" } else { "--max-depth" };
+            return Err(Failure::usage(format!(
+                "{option}: is of depths; give --calib too, or --focal-px and --baseline-mm"
+            )));
         }
         0 if args.options.unit.is_some() => {
             return Err(Failure::usage("--unit: is that of --calib, which is missing"));

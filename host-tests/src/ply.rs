@@ -23,8 +23,8 @@ pub fn write(out: &mut dyn Write, points: &[ColouredPoint]) -> io::Result<()> {
 pub fn write_in(out: &mut dyn Write, points: &[ColouredPoint], unit: &str) -> io::Result<()> {
     write!(
         out,
-        "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the left \
-         camera\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar \
+        "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the \
+         camera, of a pair the left one\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar \
          red\nproperty uchar green\nproperty uchar blue\nend_header\n",
         points.len()
     )?;

@@ -30,6 +30,12 @@ pub enum PosesError {
         /// The line, from 1.
         line: usize,
     },
+    /// There is no line of a pose.
+    #[error("{}: holds no pose; a line for each frame is needed", path.display())]
+    Empty {
+        /// The file.
+        path: PathBuf,
+    },
     /// A line is no time, or not after the one before.
     #[error("{}: line {line} is no time after the one before; a number of seconds is \
         needed", path.display())]
@@ -152,7 +158,8 @@ pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
         });
         pose.ok_or_else(|| PosesError::Line { path: path.into(), line })
     };
-    lines.map(pose).collect()
+    let poses = lines.map(pose).collect::<Result<Vec<_>, _>>()?;
+    if poses.is_empty() { Err(PosesError::Empty { path: path.into() }) } else { Ok(poses) }
 }
 
 /// The pose of twelve numbers, the rows of [R | t].

@@ -34,8 +34,8 @@ The positions are lines, one a frame in the order of the frames' names, under th
                            to the sensor if no line has more than two focal lengths. Frames that grow with \
                            the sensor's distance are brought to one size.
 
-A frame that is out of order or spoiled is named and left out; the others keep their numbers. What is no \
-                           focus stack, such as the frames of a drive, is refused.";
+A frame that is out of order or spoiled is named and left out; the others keep their numbers. Frames whose \
+                           sharpness rises and falls again and again, as on a drive, are refused.";
 
 #[derive(Debug, Args)]
 pub struct FocusArgs {

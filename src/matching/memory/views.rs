@@ -34,34 +34,34 @@ unsafe impl Plain for Note {}
 // SAFETY: eight `u8` (`repr(transparent)`).
 unsafe impl Plain for WinnerRecord {}
 
-/// The bytes before the first place where a `To` may stand, and how many whole ones there are from it on;
-/// `None` where that place is beyond the end.
+/// The bytes before the first place where a `To` may stand, and how many whole ones there are from it on.
+/// That place may be beyond the end; then there is none.
 ///
 /// [`slice::align_to`] gives the same, with panics inside that an optimiser for size leaves in.
 #[inline(always)]
-fn whole<From: Plain, To: Plain>(numbers: &[From]) -> Option<(usize, usize)> {
+fn whole<From: Plain, To: Plain>(numbers: &[From]) -> (usize, usize) {
     let (bytes, align) = (size_of_val(numbers), align_of::<To>());
     let skip =
         if align > align_of::<From>() { numbers.as_ptr().addr().wrapping_neg() & (align - 1) } else { 0 };
-    if skip <= bytes { Some((skip, (bytes - skip) / size_of::<To>())) } else { None }
+    (skip, bytes.saturating_sub(skip) / size_of::<To>())
 }
 
 /// The part of `numbers` that stands at places of `To` and is a whole number of them: all of it where the
 /// slice begins at such a place and has whole ones.
 #[inline(always)]
 pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
-    let Some((skip, count)) = whole::<From, To>(numbers) else { return &[] };
-    // SAFETY: the places are inside of `numbers` and where a `To` may stand. Both types are plain: every
-    // value of the one's bytes is a value of the other.
-    unsafe { slice::from_raw_parts(numbers.as_ptr().byte_add(skip).cast(), count) }
+    let (skip, count) = whole::<From, To>(numbers);
+    // SAFETY: the places are where a `To` may stand, and inside of `numbers`: of none the slice is empty. Both
+    // types are plain: every value of the one's bytes is a value of the other.
+    unsafe { slice::from_raw_parts(numbers.as_ptr().wrapping_byte_add(skip).cast(), count) }
 }
 
 /// Mutable access to what [`view`] shows.
 #[inline(always)]
 pub(in crate::matching) fn view_mut<From: Plain, To: Plain>(numbers: &mut [From]) -> &mut [To] {
-    let Some((skip, count)) = whole::<From, To>(numbers) else { return &mut [] };
+    let (skip, count) = whole::<From, To>(numbers);
     // SAFETY: as in `view`, and the other way round.
-    unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().byte_add(skip).cast(), count) }
+    unsafe { slice::from_raw_parts_mut(numbers.as_mut_ptr().wrapping_byte_add(skip).cast(), count) }
 }
 
 #[cfg(test)]

@@ -24,8 +24,8 @@ pub fn write_in(out: &mut dyn Write, points: &[ColouredPoint], unit: &str) -> io
     write!(
         out,
         "ply\nformat binary_little_endian 1.0\ncomment {unit}; X right, Y down, Z forward from the \
-         camera, of a pair the left one\nelement vertex {}\nproperty float x\nproperty float y\nproperty float z\nproperty uchar \
-         red\nproperty uchar green\nproperty uchar blue\nend_header\n",
+         camera, of a pair the left one\nelement vertex {}\nproperty float x\nproperty float y\nproperty \
+         float z\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n",
         points.len()
     )?;
     for point in points {

@@ -149,8 +149,8 @@ pub fn off_middle((cx, cy): (f64, f64), ImageSize { width, height }: ImageSize) 
     };
     (!is_inside(cx, width) || !is_inside(cy, height)).then(|| {
         format!(
-            "its principal point ({cx:.1}, {cy:.1}) is not near the middle of the images, which are {width} x \
-             {height} px"
+            "its principal point ({cx:.1}, {cy:.1}) is not near the middle of the images, which are {width} \
+             x {height} px"
         )
     })
 }

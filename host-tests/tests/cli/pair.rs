@@ -39,8 +39,8 @@ fn a_search_keeps_what_is_near() {
     // Everything is 210 to 380 px off, in images 800 px wide.
     let bench = Bench::new();
     let grey = |x: i64, y: u32| {
-        let bits =
-            (x as u64 / 3).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ u64::from(y / 3).wrapping_mul(0xbf58_476d);
+        let bits = (x as u64 / 3).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let bits = bits ^ u64::from(y / 3).wrapping_mul(0xbf58_476d);
         let bits = (bits ^ (bits >> 29)).wrapping_mul(0x94d0_49bb_1331_11eb);
         image::Luma([(bits >> 40) as u8])
     };
@@ -92,7 +92,8 @@ fn calibrations_that_do_not_go_together_are_refused() {
         let k = format!("[100, 0, {cx}, 0, 100, 24, 0, 0, 1]");
         format!(
             "image_width: 96\nimage_height: 48\ncamera_matrix: {{rows: 3, cols: 3, data: {k}}}\n\
-             distortion_model: plumb_bob\ndistortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}\n\
+             distortion_model: plumb_bob\n\
+             distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}\n\
              rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}\n\
              projection_matrix: {{rows: 3, cols: 4, data: [100, 0, 48, 0, 0, 100, 24, 0, 0, 0, 1, 0]}}\n"
         )

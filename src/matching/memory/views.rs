@@ -51,8 +51,8 @@ fn whole<From: Plain, To: Plain>(numbers: &[From]) -> (usize, usize) {
 #[inline(always)]
 pub(in crate::matching) fn view<From: Plain, To: Plain>(numbers: &[From]) -> &[To] {
     let (skip, count) = whole::<From, To>(numbers);
-    // SAFETY: the places are where a `To` may stand, and inside of `numbers`: of none the slice is empty. Both
-    // types are plain: every value of the one's bytes is a value of the other.
+    // SAFETY: the places are where a `To` may stand, and inside of `numbers`: of none the slice is empty.
+    // Both types are plain: every value of the one's bytes is a value of the other.
     unsafe { slice::from_raw_parts(numbers.as_ptr().wrapping_byte_add(skip).cast(), count) }
 }
 

@@ -95,8 +95,8 @@ pub fn disparities(text: &str) -> Result<Disparities, String> {
     shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
-/// Refuses a pair of swapped cameras, or the picture of one twice; `exchanged` is what the pictures would be if the cameras were exchanged
-/// before they are rectified.
+/// Refuses a pair of swapped cameras, or the picture of one twice; `exchanged` is what the pictures would be
+/// if the cameras were exchanged before they are rectified.
 pub fn refuse_unpaired(
     pictures: [&GrayImage; 2],
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,

@@ -120,7 +120,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
 /// How many frames are looked at before the first is played: a camera may begin in the dark.
 const LOOKED_AT: usize = 8;
 
-/// A folder's pictures, with those of each side in a folder.
+/// A folder's pictures, with those of each side in a folder, as a recording.
 fn of_folder(args: &ReplayArgs) -> Result<Recording, Failure> {
     let side = |name: &str| args.from.join(name);
     for name in ["left", "right"] {
@@ -129,14 +129,9 @@ fn of_folder(args: &ReplayArgs) -> Result<Recording, Failure> {
             return Err(Failure::new(format!("--from {from}: the folder has no folder '{name}' in it")));
         }
     }
-    recorded(&mut Pictures::open(&side("left"), &side("right"), args.fps)?)
-}
-
-/// A folder's pictures as a recording.
-fn recorded(pictures: &mut Pictures) -> Result<Recording, Failure> {
-    let mut bytes = Vec::new();
-    let frames = pictures.frames() as u32;
-    stereopsis_host::recording::record(pictures, frames, &mut bytes)?;
+    let mut pictures = Pictures::open(&side("left"), &side("right"), args.fps)?;
+    let (mut bytes, frames) = (Vec::new(), pictures.frames() as u32);
+    stereopsis_host::recording::record(&mut pictures, frames, &mut bytes)?;
     if let Some(e) = pictures.failed() {
         return Err(e.into());
     }

@@ -1,0 +1,69 @@
+//! What `match` says of a calibration that cannot be that of its images.
+
+use super::pair::arguments;
+use super::results::json;
+use super::support::{Bench, calibration, stereo, text};
+use stereopsis_host::scene::Scene;
+
+#[test]
+fn a_calibration_of_another_size_is_said() {
+    let bench = Bench::new();
+    let mut args = arguments(&bench, "a.png", "b.png", "64");
+    let (width, height) = (f64::from(Scene::demo().width()), f64::from(Scene::demo().height()));
+    let kitti = |cx: f64, cy: f64| {
+        format!("P0: 500 0 {cx} 0 0 500 {cy} 0 0 0 1 0\nP1: 500 0 {cx} -50 0 500 {cy} 0 0 0 1 0\n")
+    };
+    let calib = bench.put("calib.txt", kitti(width / 2.0, height / 2.0).as_bytes()).display().to_string();
+    args.extend(["--calib".to_owned(), calib.clone()]);
+    let said = |args: &[String]| text(&stereo(args).stderr);
+    assert!(said(&args).is_empty());
+    bench.put("calib.txt", kitti(width, height).as_bytes());
+    assert!(said(&args).contains("calib.txt: its principal point"), "{}", said(&args));
+    let warnings = json(&bench.path("out/summary.json"))["pair"]["warnings"].to_string();
+    assert!(warnings.contains("images of another size"), "{warnings}");
+    let size = format!("{width}x{height}");
+    let check = text(&stereo(["calib", "check", "--calib", &calib, "--size", &size]).stdout);
+    assert!(check.contains("warning: the left principal point"), "{check}");
+    let q = "Q: [[1, 0, 0, -319.5], [0, 1, 0, -239.5], [0, 0, 0, 500], [0, 0, 12.5, 0]]\n";
+    let q = bench.put("q.yml", q.as_bytes()).display().to_string();
+    let check = text(&stereo(["calib", "check", "--calib", &q, "--size", "100x100"]).stdout);
+    assert!(check.contains("warning: its principal point"), "{check}");
+    bench.put("calib.txt", calibration(96, 48).as_bytes());
+    bench.refused(&["calib", "check", "--calib", &calib, "--size", &size], "width says 96");
+}
+
+#[test]
+fn calibrations_that_do_not_go_together_are_refused() {
+    let bench = Bench::new();
+    let put = |name: &str, content: &str| bench.put(name, content.as_bytes()).display().to_string();
+    let ros = |cx: &str| {
+        let k = format!("[100, 0, {cx}, 0, 100, 24, 0, 0, 1]");
+        format!(
+            "image_width: 96\nimage_height: 48\ncamera_matrix: {{rows: 3, cols: 3, data: {k}}}\n\
+             distortion_model: plumb_bob\n\
+             distortion_coefficients: {{rows: 1, cols: 5, data: [0, 0, 0, 0, 0]}}\n\
+             rectification_matrix: {{rows: 3, cols: 3, data: [1, 0, 0, 0, 1, 0, 0, 0, 1]}}\n\
+             projection_matrix: {{rows: 3, cols: 4, data: [100, 0, 48, 0, 0, 100, 24, 0, 0, 0, 1, 0]}}\n"
+        )
+    };
+    let whole = put("whole.txt", &calibration(96, 48));
+    let marked = put("marked.txt", &format!("\u{feff}{}", calibration(96, 48)));
+    let [one, broken, not_ros] =
+        [("one.yaml", ros("48")), ("broken.yaml", ros("[")), ("not.yaml", "a: 1\n".into())]
+            .map(|(name, content)| put(name, &content));
+    let with = |first: &str, second: Option<&str>| {
+        let second = second.map(|second| ("--calib", second));
+        let mut args = bench.arguments(&[("--calib", first)]);
+        args.extend(second.into_iter().flat_map(|(option, file)| [option.to_owned(), file.to_owned()]));
+        args
+    };
+    bench.refused(&with(&whole, Some(&one)), "whole.txt: describes both cameras by itself");
+    bench.refused(&with(&one, Some(&whole)), "whole.txt: describes both cameras by itself");
+    bench.refused(&with(&one, Some(&broken)), "broken.yaml: is not well-formed");
+    bench.refused(&with(&one, Some(&not_ros)), "not.yaml: is no camera_info");
+    bench.refused(&with(&one, None), "one.yaml: is the camera_info of one camera");
+    let run = stereo(with(&marked, None));
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let scaled = put("scaled.txt", &calibration(96, 48).replace("0 0 1]", "0 0 2]"));
+    bench.refused(&with(&scaled, None), "cam0: its last row has to be 0 0 1");
+}

@@ -19,12 +19,13 @@ pub fn search(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<[u16; 
         let at = |share: f64| sorted.get((share * (sorted.len() - 1) as f64).round() as usize).copied();
         if sorted.len() < FEWEST { None } else { Some([at(ends[0])?, at(ends[1])?]) }
     };
-    let of_matches = range(&of_matches, [0.02, 0.98]);
+    let ranges = [range(&of_matches, [0.02, 0.98]), small_range(pictures)];
     let most = f64::from(Config::MOST_DISPARITIES.min(width));
-    let both = [of_matches, small_range(pictures)].into_iter().flatten();
-    let both = both.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
-    // Some answers of the smaller copy are wrong: where one search does not hold them, matches say more.
-    let [first, last] = of_matches.filter(|_| both[1] - both[0] >= most).unwrap_or(both);
+    let fits = |range: &[f64; 2]| range[1] - range[0].max(0.0) < most;
+    let both = ranges.into_iter().flatten().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+    // Some matches and some answers are wrong: where one search does not hold both, one of them says more.
+    let [first, last] =
+        if fits(&both) { both } else { ranges.into_iter().flatten().find(fits).unwrap_or(both) };
     let more = 4.0 + (last - first) / 8.0;
     let end = last + more;
     // From 0 on where that costs little: what is far has few features.

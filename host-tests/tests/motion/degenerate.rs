@@ -37,6 +37,38 @@ fn one_camera_that_only_turns_has_no_step() {
     }
 }
 
+/// Poses after steps to the side, m, each with a turn about Y, radians.
+fn way(steps: &[(f64, f64)]) -> Vec<Pose<f64>> {
+    let (mut place, mut turn) = (0.0, 0.0);
+    let moved = steps.iter().map(|&(step, by)| {
+        (place, turn) = (place + step, turn + by);
+        pose([0.0, turn, 0.0], [place, 0.0, 0.0])
+    });
+    [Pose::identity()].into_iter().chain(moved).collect()
+}
+
+#[test]
+fn one_camera_that_stops_measures_its_steps_again() {
+    const STEP: (f64, f64) = (0.054, 0.0);
+    const STEPS: [(f64, f64); 14] = [STEP; 14];
+    // It turns in place for two frames, or stands.
+    for (stop, stopped) in [((0.0, 0.01), State::RotationOnly), ((0.0, 0.0), State::Stationary)] {
+        let path = way(&[&STEPS[..], &[stop; 2], &STEPS[..8]].concat());
+        let trajectory = mono(rig(), &frames(room(), path));
+        let told: Vec<_> =
+            trajectory.steps.iter().map(|s| (s.state, s.motion.translation().norm())).collect();
+        let (before, after) = told.split_at(15);
+        assert_eq!(before[14].0, State::Tracked);
+        let states: Vec<_> = after.iter().map(|step| step.0).collect();
+        assert_eq!(states[..2], [stopped; 2]);
+        assert_eq!(states[2..], [State::Tracked; 8]);
+        // A step is as long as before.
+        let length = |steps: &[(State, f64)]| steps.iter().map(|step| step.1).sum::<f64>() / 8.0;
+        let ratio = length(&after[2..]) / length(&before[7..]);
+        assert!((ratio - 1.0).abs() < 0.02, "{ratio}");
+    }
+}
+
 #[test]
 fn a_pair_that_only_turns_measures_that_there_is_no_step() {
     let path: Vec<_> = (0..4).map(|i| pose([0.0, 0.02 * f64::from(i), 0.0], [0.0; 3])).collect();

@@ -221,8 +221,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
                     self.progress.motion.velocity = Some(Pose::identity());
                 } else {
                     self.map.update(&now, &self.tracker.matches, &solved.pose, &covariance);
-                    let is_sure = !matches!(state, State::Uncertain | State::TranslationUnknown);
-                    let velocity = self.progress.motion.velocity_after(motion, is_sure);
+                    let velocity = self.progress.motion.velocity_after(motion, state);
                     self.progress.motion.rebase(&solved.pose, velocity);
                     // A right camera that disagrees with all that is known gives no depth.
                     if state != State::LeftOnly {

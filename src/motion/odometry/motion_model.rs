@@ -25,17 +25,22 @@ pub(super) struct MotionModel<T: Real> {
     lost: u8,
     /// Whether there is a unit of length.
     pub has_unit: bool,
+    /// The length of the last sure motion with a step, in the map's unit: the camera's measure while it turns
+    /// or stands, when its velocity has no length.
+    pub last_step: T,
 }
 
 impl<T: Real> MotionModel<T> {
     pub const fn new() -> Self {
         // The first frame sets the pose.
-        Self { velocity: None, reported_pose: Pose::NOTHING, sure: None, unsure: 0, lost: 0, has_unit: false }
+        let (reported_pose, last_step) = (Pose::NOTHING, T::ZERO);
+        Self { velocity: None, reported_pose, sure: None, unsure: 0, lost: 0, has_unit: false, last_step }
     }
 
-    /// Forgets the motion; a pair has a unit of length at once.
+    /// Forgets the motion; a pair has a unit of length at once. The first step of one camera is its unit.
     pub fn reset(&mut self, is_pair: bool) {
-        *self = Self { reported_pose: Pose::identity(), has_unit: is_pair, ..Self::new() };
+        let (reported_pose, last_step) = (Pose::identity(), T::ONE);
+        *self = Self { reported_pose, has_unit: is_pair, last_step, ..Self::new() };
     }
 
     /// The pose that the last velocity predicts.
@@ -56,9 +61,14 @@ impl<T: Real> MotionModel<T> {
         self.lost > if sees_enough { PAIR_PATIENCE } else { PATIENCE }
     }
 
-    /// Takes a motion and whether it is sure; the velocity that predicts the next frame: that of the last
+    /// Takes a motion and what is known of it; the velocity that predicts the next frame: that of the last
     /// motion that was sure, for as long as that is not long ago.
-    pub fn velocity_after(&mut self, motion: Pose<T>, is_sure: bool) -> Pose<T> {
+    pub fn velocity_after(&mut self, motion: Pose<T>, state: State) -> Pose<T> {
+        let is_sure = !matches!(state, State::Uncertain | State::TranslationUnknown);
+        let length = motion.translation().norm();
+        if is_sure && state != State::RotationOnly && length > T::ZERO {
+            self.last_step = length;
+        }
         self.unsure = if is_sure { 0 } else { self.unsure.saturating_add(1) };
         match self.sure {
             Some(sure) if !is_sure && self.unsure <= UNSURE => sure,

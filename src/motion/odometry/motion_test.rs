@@ -89,7 +89,7 @@ pub(super) fn test_motion<T: Real>(
     let unit = match rig.right {
         Some((baseline, _)) => baseline,
         // Of one camera the last step is as good a unit as any.
-        None => motion.velocity.map_or(T::ONE, |v| v.translation().norm()) * T::of(10.0),
+        None => motion.last_step * T::of(10.0),
     };
     let is_none = gain(&turned) < T::of(THREE);
     if deviation > unit * T::of(OPEN) || (is_none && deviation > unit * T::of(UNKNOWN)) {

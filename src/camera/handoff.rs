@@ -133,7 +133,8 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
         slot
     }
 
-    /// Hands a whole line to the consumer.
+    /// Hands a whole line to the consumer. All lines of a frame bear the same `frame`, and those of the next
+    /// one another: a source that does not count frames tells them apart by their time stamps.
     pub fn finish(&mut self, line: EmptyLine<'b, B>, frame: FrameStart, start: LineStart) {
         // There are no more slots than the queue has room for.
         let line = FilledLine { bytes: line.0, frame, start, overruns: self.overruns };
@@ -170,7 +171,7 @@ impl<'b, const B: usize> LineConsumer<'_, 'b, B> {
 ///
 /// `wait` is called while no line waits, to sleep until the next interrupt. It returns false when the time is
 /// over, which it must do eventually: [`CameraError::TimedOut`]. A line lost on the way shows in the next
-/// one's row.
+/// one's row. A line with another [`FrameStart`] than the one before it begins a frame.
 pub struct HandedLines<'a, 'b, F, const B: usize> {
     consumer: LineConsumer<'a, 'b, B>,
     format: LineFormat,
@@ -231,7 +232,7 @@ impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B
         // an end.
         for _ in 0..=2 * u32::from(self.format.height) {
             let line = self.take()?;
-            if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {
+            if self.frame != Some(line.frame) {
                 let frame = line.frame;
                 (self.frame, self.is_over) = (Some(frame), false);
                 self.pending = Some(line);
@@ -249,7 +250,7 @@ impl<F: FnMut() -> bool, const B: usize> LineSource for HandedLines<'_, '_, F, B
             return Err(CameraError::NoLineLeft);
         }
         let line = self.take()?;
-        if self.frame.is_none_or(|frame| frame.sequence != line.frame.sequence) {
+        if self.frame != Some(line.frame) {
             // The next frame has begun: this one was short.
             self.pending = Some(line);
             self.is_over = true;

@@ -219,6 +219,30 @@ fn handed_lines_are_a_camera_that_reports_what_it_lost() {
 }
 
 #[test]
+fn frames_that_nobody_counts_are_told_apart_by_their_times() {
+    let mut bytes = [[0; BYTES]; 8];
+    let mut slots = LineSlots::<BYTES, 9>::new();
+    let (mut producer, consumer) = slots.split(&mut bytes);
+    // Frames 1 and 3 whole, frame 2 without its last row.
+    let frame = |number: u64| FrameStart { sequence: 0, timestamp_us: 1000 * number, exposure_us: 0 };
+    let mut to_come = VecDeque::from([(1, 0), (1, 1), (1, 2), (2, 0), (2, 1), (3, 0), (3, 1), (3, 2)]);
+    let wait = || {
+        let Some((number, row)) = to_come.pop_front() else { return false };
+        let Some(line) = producer.begin() else { return false };
+        let timestamp_us = 1000 * number + u64::from(row);
+        producer.finish(line, frame(number), LineStart { row, timestamp_us });
+        true
+    };
+    let mut camera = HandedLines::new(consumer, FORMAT, wait).expect("a slot holds a line");
+    for (number, height) in [(1, 3), (2, 2), (3, 3)] {
+        assert_eq!(camera.start_frame(), Ok(frame(number)));
+        let rows = [0; 3].map(|_| camera.next_line(&mut [0; BYTES]).map(|start| start.row).ok());
+        assert_eq!(rows, [Some(0), Some(1), Some(2).filter(|_| height == 3)], "frame {number}");
+    }
+    assert_eq!(camera.start_frame(), Err(CameraError::TimedOut));
+}
+
+#[test]
 fn lines_longer_than_a_slot_are_refused() {
     let mut bytes = [[0; BYTES]; 2];
     let mut slots = LineSlots::<BYTES, 3>::new();

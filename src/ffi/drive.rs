@@ -14,7 +14,7 @@ use core::ptr::null;
 /// Bytes that are enough for a drive rule, on any target.
 pub const STEREOPSIS_DRIVE_BYTES: usize = 40;
 /// Bytes that are enough for the free space over frames, on any target.
-pub const STEREOPSIS_FREE_SPACE_BYTES: usize = 1024;
+pub const STEREOPSIS_FREE_SPACE_BYTES: usize = 1536;
 
 /// Drive rule in the caller's memory.
 pub struct DriveHandle {

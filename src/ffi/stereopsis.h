@@ -492,7 +492,7 @@
 /**
  * Bytes that are enough for the free space over frames, on any target.
  */
-#define STEREOPSIS_FREE_SPACE_BYTES 1024
+#define STEREOPSIS_FREE_SPACE_BYTES 1536
 
 /**
  * Result of a call; below 0 it is an error, and nothing has changed unless the function says so.

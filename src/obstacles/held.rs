@@ -58,6 +58,8 @@ pub struct FreeSpace {
     rule: Hysteresis,
     held: [Held; ObstacleConfig::MOST_SECTORS],
     sectors: [Sector; ObstacleConfig::MOST_SECTORS],
+    /// The last surface that was seen in each sector: what is held, also through frames that are blind.
+    surfaces: [Sector; ObstacleConfig::MOST_SECTORS],
 }
 
 impl FreeSpace {
@@ -74,21 +76,27 @@ impl FreeSpace {
             seen_mm: 0,
         };
         let held = [Held::NOTHING; ObstacleConfig::MOST_SECTORS];
-        Self { rule, held, sectors: [BLIND; ObstacleConfig::MOST_SECTORS] }
+        let sectors = [BLIND; ObstacleConfig::MOST_SECTORS];
+        Self { rule, held, sectors, surfaces: sectors }
     }
 
-    /// Takes a finished frame. A sector that turns blind is blind at once, whatever it was before.
+    /// Takes a finished frame. A sector that turns blind is blind at once, whatever it was before. What is
+    /// held there is shown again by a frame that sees nothing in its place, while it counts.
     pub fn update(&mut self, frame: &ObstaclesView<'_>) {
-        for (index, (held, kept)) in self.held.iter_mut().zip(&mut self.sectors).enumerate() {
+        let sectors = self.sectors.iter_mut().zip(&mut self.surfaces);
+        for (index, (held, (kept, surface))) in self.held.iter_mut().zip(sectors).enumerate() {
             let now = frame.sector(index);
             let shows = matches!(now.state, SectorState::Obstacle | SectorState::Drop);
             let counts = held.update(shows.then_some(now.depth_mm), self.rule);
+            if shows {
+                *surface = now;
+            }
             *kept = match (now.state, counts) {
                 (SectorState::Obstacle | SectorState::Drop, None) => {
                     Sector { state: SectorState::Blind, ..now }
                 }
                 // What is held is the last surface that was seen here.
-                (SectorState::Free, Some(_)) => *kept,
+                (SectorState::Free, Some(_)) => *surface,
                 _ => now,
             };
         }

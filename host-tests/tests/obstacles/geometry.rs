@@ -211,6 +211,27 @@ fn hysteresis_holds_and_confirms() {
 }
 
 #[test]
+fn what_is_held_outlasts_a_blind_frame() {
+    let (clear, boxed) = (Map::of(rig(), [160, 120], |_, v| floor(&rig(), 0.3, 0.1, v)), box_ahead(0.1));
+    let dark = Map::of(rig(), [160, 120], |_, _| None);
+    let mut finder = clear.finder(&ObstacleConfig::default());
+    let mut space = FreeSpace::new(Hysteresis { confirm: 1, release: 2 });
+    let mut shown = Vec::new();
+    for map in [&boxed, &boxed, &dark, &clear, &clear] {
+        map.rows(&mut finder, |_| true);
+        let _ = finder.finish();
+        space.update(&finder.as_mut_view());
+        shown.push(space.sector(7));
+    }
+    use SectorState::{Blind, Free, Obstacle};
+    assert_eq!(
+        shown.iter().map(|sector| sector.state).collect::<Vec<_>>(),
+        [Obstacle, Obstacle, Blind, Obstacle, Free]
+    );
+    assert_eq!(shown[3], shown[1], "the surface that was seen last");
+}
+
+#[test]
 fn no_ground_and_no_answers_are_never_clear() {
     let mut rule = DriveRule::new(DriveConfig::default());
     let mut finder = box_ahead(0.1).finder(&ObstacleConfig::default());

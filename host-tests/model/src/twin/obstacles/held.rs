@@ -23,8 +23,8 @@ pub fn counts(shown: &[Option<i128>], rule: Hysteresis) -> Option<i128> {
 
 /// The sectors that count after the last of these frames.
 ///
-/// A surface that is not believed in makes its sector blind; a free sector with one that is believed in stays
-/// what it was.
+/// A surface that is not believed in makes its sector blind; a free sector with one that is believed in shows
+/// that surface as it was seen last.
 pub fn free_space(frames: &[Vec<Sector>], rule: Hysteresis) -> Vec<Sector> {
     let count = frames.last().map_or(0, Vec::len);
     let one = |index: usize| {
@@ -33,11 +33,14 @@ pub fn free_space(frames: &[Vec<Sector>], rule: Hysteresis) -> Vec<Sector> {
             .iter()
             .map(|sectors| Some(sectors[index].depth_mm).filter(|_| shows(&sectors[index])))
             .collect();
-        let mut kept = frames[0][index];
+        let (mut kept, mut surface) = (frames[0][index], frames[0][index]);
         for (now, sectors) in frames.iter().enumerate() {
             let sector = sectors[index];
+            if shows(&sector) {
+                surface = sector;
+            }
             kept = match (sector.state, counts(&shown[..=now], rule)) {
-                (SectorState::Free, Some(_)) => kept,
+                (SectorState::Free, Some(_)) => surface,
                 (_, None) if shows(&sector) => Sector { state: SectorState::Blind, ..sector },
                 _ => sector,
             };

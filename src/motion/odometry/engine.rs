@@ -227,8 +227,9 @@ impl<'a, T: Real> OdometryView<'a, T> {
                     if state != State::LeftOnly {
                         self.map.add_new(&now);
                     }
+                    self.progress.calibration.moved(&motion);
                     if !matches!(state, State::Uncertain | State::LeftOnly) {
-                        self.calibrate(&now, &motion);
+                        self.calibrate(&now);
                     }
                 }
                 let covariance = covariance + doubt;
@@ -274,9 +275,9 @@ impl<'a, T: Real> OdometryView<'a, T> {
     }
 
     /// Compares this view with the one that its points are anchored in.
-    fn calibrate(&mut self, now: &Moment<'_, T>, motion: &Pose<T>) {
+    fn calibrate(&mut self, now: &Moment<'_, T>) {
         let Some(rig) = self.progress.rig.first_mut() else { return };
-        self.progress.calibration.step(now, rig, self.map.tracks, &self.tracker.matches, motion);
+        self.progress.calibration.step(now, rig, self.map.tracks, &self.tracker.matches);
     }
 
     /// All points are new.

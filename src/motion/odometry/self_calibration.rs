@@ -134,21 +134,25 @@ impl<T: Real> SelfCalibration<T> {
         }
     }
 
-    /// Takes a frame whose `motion` is known, and whose points have been moved into it. Once the estimate is
-    /// sure, and if it is asked for, the rig is corrected, and the points with it.
+    /// Takes the `motion` of a frame into which the points have been moved, also where the frame itself is
+    /// not measured.
+    pub fn moved(&mut self, motion: &Pose<T>) {
+        self.since = self.since.then(motion);
+        self.frames = self.frames.saturating_add(1);
+    }
+
+    /// Takes a frame whose motion is known and taken. Once the estimate is sure, and if it is asked for, the
+    /// rig is corrected, and the points with it.
     pub fn step(
         &mut self,
         now: &Moment<'_, T>,
         rig: &mut OdometryRig<T>,
         tracks: &mut [Track<T>],
         matches: &[PointMatch<T>],
-        motion: &Pose<T>,
     ) {
         if rig.right.is_none() {
             return;
         }
-        self.since = self.since.then(motion);
-        self.frames = self.frames.saturating_add(1);
         let pair = TwoViews {
             tracks: &*tracks,
             matches,

@@ -11,6 +11,9 @@ use core::fmt;
 /// line, the pair fails once and goes on with the row below, for which the camera that is behind skips lines.
 /// A stale line or frame of either, shown by its time stamp or number, is refused. The caller sees the left
 /// camera's time stamps.
+///
+/// Both cameras have to wait for their lines: where the right one gives [`CameraError::WouldBlock`], the left
+/// one's line is lost already.
 #[derive(Debug)]
 pub struct CameraPair<L, R> {
     left: L,

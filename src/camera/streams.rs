@@ -99,7 +99,7 @@ impl<S: LineSource, const RAW: usize> StereoSource for SideBySide<S, RAW> {
 }
 
 /// Two cameras interleaved in one stream: line 2 v is row v of the left one, line 2 v + 1 that of the right
-/// one.
+/// one. The stream has to wait for its lines: a [`CameraError::WouldBlock`] between the two loses the row.
 #[derive(Debug)]
 pub struct Interleaved<S> {
     source: S,

@@ -8,7 +8,8 @@ use embedded_hal::digital::OutputPin;
 /// A stereo source whose sensors expose together on a pulse of one pin.
 ///
 /// [`start_frame`](StereoSource::start_frame) holds the pin high for the pulse's length, then waits for the
-/// frame.
+/// frame. The source has to wait for its frame: each repeat after a [`CameraError::WouldBlock`] is a pulse of
+/// its own.
 ///
 /// ```text
 ///             ┌──────────┐

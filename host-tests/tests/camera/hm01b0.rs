@@ -116,6 +116,38 @@ fn a_hm01b0_is_set_up_register_by_register() {
 }
 
 #[test]
+fn a_hm01b0s_exposure_stays_within_its_frame() {
+    let (lines, exposure) = (
+        |lines: u16| [hw(0x0340, (lines >> 8) as u8), hw(0x0341, lines as u8)],
+        |lines: u16| [hw(0x0202, (lines >> 8) as u8), hw(0x0203, lines as u8)],
+    );
+    let group = [hw(0x0104, 1)];
+    let with =
+        |size: Vec<Transaction>, lines: u16| [&size[..size.len() - 1], &exposure(lines), &group].concat();
+    let mut expected = hm01b0_start();
+    // 100 ms, of which 90 ms are 718 lines.
+    expected.extend([&lines(797)[..], &group, &exposure(718), &[hw(0x0205, 0)], &group].concat());
+    // 50 ms are 398 lines, and 60 ms are 478; a small picture has 132.
+    expected.extend([&lines(398)[..], &exposure(396), &group].concat());
+    expected.extend([&lines(478)[..], &exposure(476), &group].concat());
+    expected.extend(with(size(3, 3, 1, 132), 130));
+    expected.extend([&lines(797)[..], &exposure(718), &group].concat());
+    // A reset leaves the exposure to the chip.
+    expected.extend(hm01b0_start());
+    let mut bus = Mock::new(&expected);
+    let mut sensor = Hm01b0::new(bus.clone(), 3_000_000);
+    sensor.initialise(&mut NoopDelay::new()).expect("the bus takes it");
+    sensor.set_frame_time(100_000).expect("the bus takes it");
+    sensor.set_exposure(90_000, 16).expect("the bus takes it");
+    sensor.set_frame_time(50_000).expect("the bus takes it");
+    sensor.set_frame_time(60_000).expect("the bus takes it");
+    sensor.set_size(Hm01b0Size::Qqvga).expect("the bus takes it");
+    sensor.set_frame_time(100_000).expect("the bus takes it");
+    sensor.initialise(&mut NoopDelay::new()).expect("the bus takes it");
+    bus.done();
+}
+
+#[test]
 fn a_hm01b0_that_stays_in_reset_is_given_up() {
     let mut expected = vec![hw(0x0103, 1)];
     expected.extend((0..10).map(|_| hr(0x0100, 0xff)));

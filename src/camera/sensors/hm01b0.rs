@@ -99,6 +99,8 @@ macro_rules! driver {
         /// Clock in which lines are counted, Hz.
         clock_hz: u32,
         frame_lines: u16,
+        /// Lines of the exposure that was asked for; 0 before the first one, which leaves it to the chip.
+        exposure_lines: u16,
         size: Hm01b0Size,
     }
 
@@ -112,12 +114,13 @@ macro_rules! driver {
         /// master clock divided by the register OSC_CLK_DIV, 8 after a reset.
         pub const fn new(bus: I, clock_hz: u32) -> Self {
             let size = Hm01b0Size::Qvga;
-            Self { bus, clock_hz, frame_lines: size.least_lines(), size }
+            Self { bus, clock_hz, frame_lines: size.least_lines(), exposure_lines: 0, size }
         }
 
         /// Resets the sensor, checks its identity, and sets it up in standby without automatic exposure.
         pub $($async)? fn initialise<D: $delay>(&mut self, delay: &mut D) -> Outcome<I> {
             self.write(SOFTWARE_RESET, 1)$($wait)*?;
+            self.exposure_lines = 0;
             delay.delay_ms(1)$($wait)*;
             let mut is_ready = false;
             for _ in 0..ATTEMPTS {
@@ -158,24 +161,33 @@ macro_rules! driver {
             )$($wait)*
         }
 
-        /// Sets the region that is read out, at the clock's highest frame rate.
+        /// Sets the region that is read out, at the clock's highest frame rate. An exposure that the frame is
+        /// too short for is shortened.
         pub $($async)? fn set_size(&mut self, size: Hm01b0Size) -> Outcome<I> {
             let (readout, binning) = if size == Hm01b0Size::Qqvga { (3, 3) } else { (1, 0) };
             self.write(READOUT_X, readout)$($wait)*?;
             self.write(READOUT_Y, readout)$($wait)*?;
             self.write(BINNING, binning)$($wait)*?;
             self.write(QVGA_WINDOW, u8::from(size != Hm01b0Size::Whole))$($wait)*?;
-            self.write_pair(FRAME_LINES, size.least_lines())$($wait)*?;
-            self.write(GROUP, 1)$($wait)*?;
-            (self.size, self.frame_lines) = (size, size.least_lines());
+            self.set_frame_lines(size.least_lines())$($wait)*?;
+            self.size = size;
             Ok(())
         }
 
-        /// Sets the time between two frames, rounded to whole lines.
+        /// Sets the time between two frames, rounded to whole lines. An exposure that is too long for it is
+        /// shortened until the frame is longer again.
         pub $($async)? fn set_frame_time(&mut self, frame_us: u32) -> Outcome<I> {
             within(frame_us, self.lines_us(self.size.least_lines()), self.lines_us(u16::MAX))?;
             let lines = self.lines_in(frame_us).max(self.size.least_lines());
+            self.set_frame_lines(lines)$($wait)*
+        }
+
+        /// Sets the lines of a frame, with the exposure within them.
+        $($async)? fn set_frame_lines(&mut self, lines: u16) -> Outcome<I> {
             self.write_pair(FRAME_LINES, lines)$($wait)*?;
+            if self.exposure_lines > 0 {
+                self.write_pair(INTEGRATION, self.exposure_lines.min(lines.saturating_sub(2)))$($wait)*?;
+            }
             self.write(GROUP, 1)$($wait)*?;
             self.frame_lines = lines;
             Ok(())
@@ -210,7 +222,9 @@ macro_rules! driver {
             let doublings = (gain_16ths / 16).checked_ilog2().unwrap_or(0) as u8;
             self.write_pair(INTEGRATION, lines)$($wait)*?;
             self.write(ANALOG_GAIN, doublings << 4)$($wait)*?;
-            self.write(GROUP, 1)$($wait)*
+            self.write(GROUP, 1)$($wait)*?;
+            self.exposure_lines = lines;
+            Ok(())
         }
 
         /// Releases the bus.

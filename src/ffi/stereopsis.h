@@ -1431,7 +1431,7 @@ typedef struct stereopsis_agreement {
    */
   float rms_px;
   /**
-   * Probability that an estimate with as many inliers was missed.
+   * Probability that an estimate as good was missed, by the matches within 1.5 thresholds.
    */
   float miss_probability;
 } stereopsis_agreement;

@@ -69,7 +69,7 @@ pub struct CAgreement {
     pub inliers: u32,
     /// Root mean square of their Sampson distances, px.
     pub rms_px: f32,
-    /// Probability that an estimate with as many inliers was missed.
+    /// Probability that an estimate as good was missed, by the matches within 1.5 thresholds.
     pub miss_probability: f32,
 }
 

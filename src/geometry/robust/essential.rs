@@ -34,8 +34,9 @@ pub struct RobustEssential<T: Real> {
     pub rms_px: T,
     /// Samples of five that were drawn.
     pub samples: u32,
-    /// The probability that an estimate with as many inliers was missed: `(1 - w^5)^k` for the share w of
-    /// inliers and k samples.
+    /// The probability that an estimate as good was missed: `(1 - w^5)^k` for k samples and the share w of
+    /// correspondences that have a weight, which are those within one and a half thresholds, not
+    /// the inliers alone.
     pub miss_probability: T,
 }
 

@@ -58,8 +58,9 @@ pub struct RobustFundamental<T: Real> {
     pub rms_px: T,
     /// Samples of seven that were drawn.
     pub samples: u32,
-    /// The probability that an estimate with as many inliers was missed: `(1 - w^7)^k` for the share w of
-    /// inliers and k samples. More than was asked when the samples ran out.
+    /// The probability that an estimate as good was missed: `(1 - w^7)^k` for k samples and the share w of
+    /// correspondences that have a weight, which are those within one and a half thresholds, not
+    /// the inliers alone. More than was asked when the samples ran out.
     pub miss_probability: T,
 }
 

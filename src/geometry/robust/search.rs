@@ -68,7 +68,8 @@ impl<'a, T: Real, const K: usize> Search<'a, T, K> {
     }
 
     /// `(1 - w^K)^k`: the probability that none of k samples held correspondences of the best estimate alone,
-    /// w being their share.
+    /// w being the share of those with a weight: also from beyond the threshold they lead to the estimate,
+    /// for what a sample gives is refined.
     fn miss(&self, drawn: u32) -> T {
         let (mut kept, mut all, mut all_good) =
             (T::count(self.score.inliers), T::count(self.seen.len()), T::ONE);
@@ -279,6 +280,20 @@ mod tests {
     fn taken(search: &mut Search<'_, f64, MINIMUM>) -> usize {
         let (next, mut random) = (search.sampler.below(1 << 31), Random::new(0));
         (0..100).find(|_| random.below(1 << 31) == next).expect("one of the first")
+    }
+
+    #[test]
+    fn what_has_a_weight_counts_for_the_miss() {
+        // Sampson's distance is the row's over the root of two; the threshold is 1.
+        let mut seen = rectified::<20>();
+        (0..6).for_each(|i| seen[i].second.y += 1.4 * 2.0_f64.sqrt());
+        (6..9).for_each(|i| seen[i].second.y += 1.6 * 2.0_f64.sqrt());
+        let mut search = search(&seen);
+        let score = Sprt::new().score(&lower(0.0), &seen, search.loss, 0.0, (0, 1)).expect("a score");
+        assert_eq!(score.inliers, 17);
+        search.score = score;
+        let all_good: f64 = (0..7).map(|i| (17.0 - f64::from(i)) / (20.0 - f64::from(i))).product();
+        assert!((search.miss(1) - (1.0 - 0.99 * all_good)).abs() < 1e-12);
     }
 
     #[test]

@@ -72,8 +72,8 @@ pub(crate) use queue::Positions;
 #[cfg(feature = "async")]
 pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{
-    ExposureControl, Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern,
-    Mt9v034Window, SensorError,
+    ExposureControl, GainSteps, Hm01b0, Hm01b0Mode, Hm01b0Size, Mt9v034, Mt9v034Binning, Mt9v034Mode,
+    Mt9v034Pattern, Mt9v034Window, SensorError,
 };
 pub use signal::{LineListener, LineNotifier, LineSignal};
 pub use source::{CameraError, ErrorType, LineFault, LineSource, StereoSource};

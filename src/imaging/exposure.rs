@@ -1,6 +1,7 @@
 //! Automatic exposure: one exposure and gain for both cameras of a pair.
 
 use super::histogram::Histogram;
+use crate::camera::{ExposureControl, GainSteps};
 
 /// Exposure and gain for both sensors.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -13,7 +14,9 @@ pub struct ExposureCommand {
     pub gain_16ths: u16,
 }
 
-/// Limits of exposure and gain.
+/// Limits of exposure and gain, and the steps in which a sensor sets them.
+///
+/// The controller reckons with what it asks for, so that a sensor that sets something else makes it swing.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -24,18 +27,53 @@ pub struct ExposureLimits {
     pub most_us: u32,
     /// Largest gain in sixteenths; 16 is no gain.
     pub most_gain_16ths: u16,
+    /// Step of the exposure, microseconds: the time of a line of most sensors, rounded up. With 0 or 1 any
+    /// exposure can be set.
+    pub exposure_step_us: u32,
+    /// Steps of the gain.
+    pub gain_steps: GainSteps,
+}
+
+impl ExposureLimits {
+    /// Limits and steps of a sensor as it is configured: its lines and frames say how long it can expose.
+    pub fn of_sensor<S: ExposureControl + ?Sized>(sensor: &S) -> Self {
+        let (least_us, most_us) = sensor.exposure_limits_us();
+        Self {
+            least_us,
+            most_us,
+            most_gain_16ths: sensor.most_gain_16ths(),
+            exposure_step_us: sensor.exposure_step_us(),
+            gain_steps: sensor.gain_steps(),
+        }
+    }
+
+    /// An exposure down to whole steps, within the limits, microseconds.
+    const fn whole_us(&self, exposure_us: u64) -> u32 {
+        let step = if self.exposure_step_us == 0 { 1 } else { self.exposure_step_us as u64 };
+        let whole = exposure_us - exposure_us % step;
+        if exposure_us >= self.most_us as u64 {
+            self.most_us
+        } else if whole <= self.least_us as u64 {
+            self.least_us
+        } else {
+            whole as u32
+        }
+    }
 }
 
 /// Controller of one exposure for both cameras of a pair, from the histograms of their frames.
 ///
 /// The brighter camera counts, so that neither saturates. The controlled variable is `light = exposure x
-/// gain`, with the exposure raised to its limit before the gain. With mean grey `m`, `light <- light x
+/// gain`, with the exposure raised to its limit before the gain, and both in the sensor's steps: a gain in
+/// sixteenths makes up what whole steps of the exposure leave, and the exposure is shortened by what the next
+/// doubling of a gain is too much. With mean grey `m`, `light <- light x
 /// clamp(TARGET / m, 1/2, 2)`; where more than [`AutoExposure::MOST_SATURATED`] per mille of the pixels are
 /// saturated, the light decreases by a quarter to a half.
 ///
 /// After a change, [`AutoExposure::DELAY`] frames are ignored, as sensors apply settings late. Within
 /// [`AutoExposure::DEAD_BAND`] of the target nothing changes. A linear response therefore reaches the band in
-/// as many steps as the light has doublings, and stays.
+/// as many steps as the light has doublings, and stays. Where the sensor's steps are wider than the band the
+/// setting below the target stays.
 ///
 /// The caller passes the resulting [`ExposureCommand`] to both sensors
 /// ([`ExposureControl`](crate::camera::ExposureControl)).
@@ -64,8 +102,14 @@ impl AutoExposure {
         let least_us = if limits.least_us == 0 && limits.most_us > 0 { 1 } else { limits.least_us };
         let most_us = if limits.most_us < least_us { least_us } else { limits.most_us };
         let most_gain_16ths = if limits.most_gain_16ths < 16 { 16 } else { limits.most_gain_16ths };
-        let current = ExposureCommand { exposure_us: least_us + (most_us - least_us) / 2, gain_16ths: 16 };
-        Self { limits: ExposureLimits { least_us, most_us, most_gain_16ths }, current, waiting: 0 }
+        let most_gain_16ths = match limits.gain_steps {
+            GainSteps::Sixteenths => most_gain_16ths,
+            GainSteps::Doublings => 1 << most_gain_16ths.ilog2(),
+        };
+        let limits = ExposureLimits { least_us, most_us, most_gain_16ths, ..limits };
+        let middle_us = least_us + (most_us - least_us) / 2;
+        let current = ExposureCommand { exposure_us: limits.whole_us(middle_us as u64), gain_16ths: 16 };
+        Self { limits, current, waiting: 0 }
     }
 
     /// Returns the current setting.
@@ -101,12 +145,30 @@ impl AutoExposure {
         Some(next)
     }
 
-    /// Splits light into exposure and gain, the exposure as long as its limit.
+    /// Splits light into exposure and gain, the exposure as long as its limit and both in the sensor's steps.
     fn split(&self, light: u64) -> ExposureCommand {
-        let ExposureLimits { least_us, most_us, most_gain_16ths } = self.limits;
-        let exposure_us = (light / 16).clamp(least_us.into(), most_us.into());
-        let gain = light.checked_div(exposure_us).unwrap_or(16).clamp(16, most_gain_16ths.into());
-        ExposureCommand { exposure_us: exposure_us as u32, gain_16ths: gain as u16 }
+        let limits = &self.limits;
+        let most_gain = u64::from(limits.most_gain_16ths);
+        let (exposure_us, gain) = match limits.gain_steps {
+            GainSteps::Sixteenths => {
+                let exposure_us = limits.whole_us(light / 16);
+                (exposure_us, light.checked_div(exposure_us.into()).unwrap_or(16).clamp(16, most_gain))
+            }
+            GainSteps::Doublings => {
+                let least_gain = light.div_ceil(u64::from(limits.most_us.max(1)));
+                let gain = least_gain.clamp(16, most_gain).next_power_of_two();
+                (limits.whole_us(light / gain.max(16)), gain)
+            }
+        };
+        // Where no gain makes up what whole steps leave, one step more may be nearer. It is taken if it ends
+        // well within the dead band: only beyond the band is it left again, so that noise makes no swing.
+        let is_short = gain == most_gain || limits.gain_steps == GainSteps::Doublings;
+        let longer_us = limits.whole_us(u64::from(exposure_us) + u64::from(limits.exposure_step_us.max(1)));
+        let (shorter, longer) = (u64::from(exposure_us) * gain, u64::from(longer_us) * gain);
+        let most = light * u64::from(Self::TARGET + Self::DEAD_BAND / 2) / u64::from(Self::TARGET);
+        let takes_longer = is_short && longer <= most && shorter + longer < 2 * light;
+        let exposure_us = if takes_longer { longer_us } else { exposure_us };
+        ExposureCommand { exposure_us, gain_16ths: gain as u16 }
     }
 }
 
@@ -114,7 +176,13 @@ impl AutoExposure {
 mod tests {
     use super::*;
 
-    const LIMITS: ExposureLimits = ExposureLimits { least_us: 100, most_us: 10_100, most_gain_16ths: 64 };
+    const LIMITS: ExposureLimits = ExposureLimits {
+        least_us: 100,
+        most_us: 10_100,
+        most_gain_16ths: 64,
+        exposure_step_us: 1,
+        gain_steps: GainSteps::Sixteenths,
+    };
 
     /// A histogram of pixels, so many of each grey level.
     fn of(levels: &[(u8, usize)]) -> Histogram {
@@ -212,6 +280,63 @@ mod tests {
         let gains = [32, 16, 16, 16, 16, 16, 16, 16, 16];
         for (at, found) in lowered.into_iter().enumerate() {
             assert_eq!(found, exposures.get(at).map(|&exposure_us| (exposure_us, gains[at])), "{at}");
+        }
+    }
+
+    /// What a sensor of these limits is set to once it is at rest, and the mean then, for a scene of so many
+    /// grey levels in a millisecond.
+    fn rest(limits: ExposureLimits, grey_per_ms: u32) -> (ExposureCommand, u32) {
+        let mut auto = AutoExposure::new(limits);
+        let mut quiet = 0;
+        for _ in 0..100 {
+            let ExposureCommand { exposure_us, gain_16ths } = auto.current();
+            let mean = (grey_per_ms * exposure_us / 1000 * u32::from(gain_16ths) / 16).min(255);
+            let seen = of(&[(mean as u8, 16)]);
+            quiet = if auto.frame([&seen, &seen]).is_some() { 0 } else { quiet + 1 };
+            if quiet > 20 {
+                return (auto.current(), mean);
+            }
+        }
+        panic!("it swings: {limits:?} under {grey_per_ms}");
+    }
+
+    #[test]
+    fn steps_of_the_exposure_are_whole_and_the_gain_makes_up_the_rest() {
+        let limits = ExposureLimits { least_us: 32, most_us: 16_000, exposure_step_us: 32, ..LIMITS };
+        // A step is worth 70: two would be 140.
+        let (command, mean) = rest(limits, 2200);
+        assert_eq!((command.exposure_us, mean), (32, 96));
+        assert!((20..=24).contains(&command.gain_16ths), "{command:?}");
+        // Without a gain it stays at the step below, but for one that is nearly enough.
+        let alone = ExposureLimits { most_gain_16ths: 16, ..limits };
+        assert_eq!(rest(alone, 2200), (ExposureCommand { exposure_us: 32, gain_16ths: 16 }, 70));
+        assert_eq!(rest(alone, 1600), (ExposureCommand { exposure_us: 64, gain_16ths: 16 }, 102));
+        for grey_per_ms in (10..8000).step_by(7) {
+            for limits in [limits, alone] {
+                let ExposureCommand { exposure_us, .. } = rest(limits, grey_per_ms).0;
+                assert!(exposure_us.is_multiple_of(32), "{exposure_us}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_gain_of_doublings_goes_up_and_shortens_the_exposure() {
+        let limits = ExposureLimits {
+            least_us: 200,
+            most_us: 10_000,
+            most_gain_16ths: 200,
+            exposure_step_us: 100,
+            gain_steps: GainSteps::Doublings,
+        };
+        // 70 at the longest exposure: some seven tenths of it at twice the gain.
+        let (command, mean) = rest(limits, 7);
+        assert_eq!(command.gain_16ths, 32, "{command:?}");
+        assert!((6800..=7400).contains(&command.exposure_us) && (95..=105).contains(&mean), "{command:?}");
+        // The largest doubling is eightfold.
+        assert_eq!(rest(limits, 1).0, ExposureCommand { exposure_us: 10_000, gain_16ths: 128 });
+        for grey_per_ms in 1..1000 {
+            let ExposureCommand { exposure_us, gain_16ths } = rest(limits, grey_per_ms).0;
+            assert!(gain_16ths.is_power_of_two() && exposure_us.is_multiple_of(100));
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Searches and loops that move hardware.
 
 use arbitrary::{Result, Unstructured};
+use stereopsis::camera::GainSteps;
 use stereopsis::focus::{ActuatorLimits, Autofocus, FocusSearch, FocusSearchStep, LensCommand, LensEvent};
 use stereopsis::imaging::{AutoExposure, ExposureLimits, Histogram};
 
@@ -48,8 +49,14 @@ fn autofocus(u: &mut Unstructured<'_>) -> Result<()> {
 }
 
 fn exposure(u: &mut Unstructured<'_>) -> Result<()> {
-    let limits =
-        ExposureLimits { least_us: u.arbitrary()?, most_us: u.arbitrary()?, most_gain_16ths: u.arbitrary()? };
+    let gain_steps = if u.arbitrary()? { GainSteps::Doublings } else { GainSteps::Sixteenths };
+    let limits = ExposureLimits {
+        least_us: u.arbitrary()?,
+        most_us: u.arbitrary()?,
+        most_gain_16ths: u.arbitrary()?,
+        exposure_step_us: u.arbitrary()?,
+        gain_steps,
+    };
     let mut auto = AutoExposure::new(limits);
     let (least, most) = (limits.least_us, limits.most_us.max(limits.least_us));
     let mut histograms = [Histogram::new(), Histogram::new()];
@@ -66,6 +73,8 @@ fn exposure(u: &mut Unstructured<'_>) -> Result<()> {
             (16..=limits.most_gain_16ths.max(16)).contains(&command.gain_16ths),
             "{command:?} {limits:?}"
         );
+        let is_doubling = gain_steps == GainSteps::Sixteenths || command.gain_16ths.is_power_of_two();
+        assert!(is_doubling, "{command:?} {limits:?}");
     }
     Ok(())
 }

@@ -1,13 +1,24 @@
 //! One exposure for two cameras, and what their pictures tell of their health.
 
+use embedded_hal::i2c::{ErrorKind, ErrorType, I2c, Operation};
 use image::GrayImage;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::fmt::Debug;
+use stereopsis::camera::{ExposureControl, GainSteps, Hm01b0, Mt9v034};
 use stereopsis::imaging::{
     AutoExposure, CameraHealth, ExposureCommand, ExposureLimits, Histogram, PairMonitor,
 };
 use stereopsis_host::scene::Scene;
 use stereopsis_host::scene::pattern::Pattern;
 
-const LIMITS: ExposureLimits = ExposureLimits { least_us: 30, most_us: 15_000, most_gain_16ths: 64 };
+const LIMITS: ExposureLimits = ExposureLimits {
+    least_us: 30,
+    most_us: 15_000,
+    most_gain_16ths: 64,
+    exposure_step_us: 1,
+    gain_steps: GainSteps::Sixteenths,
+};
 
 /// What a camera sees of a scene whose brightest point gives `light` grey levels a millisecond.
 fn histogram(scene: &GrayImage, light: f64, gain: f64, command: ExposureCommand) -> Histogram {
@@ -84,9 +95,9 @@ fn where_the_limits_are_reached_nothing_swings() {
 
 #[test]
 fn limits_that_contradict_themselves_are_put_in_order() {
-    let auto = AutoExposure::new(ExposureLimits { least_us: 0, most_us: 0, most_gain_16ths: 0 });
+    let auto = AutoExposure::new(ExposureLimits { least_us: 0, most_us: 0, most_gain_16ths: 0, ..LIMITS });
     assert_eq!(auto.current(), ExposureCommand { exposure_us: 0, gain_16ths: 16 });
-    let auto = AutoExposure::new(ExposureLimits { least_us: 9, most_us: 5, most_gain_16ths: 0 });
+    let auto = AutoExposure::new(ExposureLimits { least_us: 9, most_us: 5, most_gain_16ths: 0, ..LIMITS });
     assert_eq!(auto.current(), ExposureCommand { exposure_us: 9, gain_16ths: 16 });
 }
 
@@ -151,7 +162,8 @@ fn commands_stay_within_the_limits() {
     for (least_us, most_us, expected) in
         [(0, 0, (0, 0)), (0, 1, (1, 1)), (0, 9, (1, 9)), (5, 5, (5, 5)), (7, 0, (7, 7)), (u32::MAX, 0, LAST)]
     {
-        let mut exposure = AutoExposure::new(ExposureLimits { least_us, most_us, most_gain_16ths: 16 });
+        let mut exposure =
+            AutoExposure::new(ExposureLimits { least_us, most_us, most_gain_16ths: 16, ..LIMITS });
         let range = expected.0..=expected.1;
         assert!(range.contains(&exposure.current().exposure_us), "{least_us} to {most_us}");
         for frame in 0..40 {
@@ -168,4 +180,102 @@ const LAST: (u32, u32) = (u32::MAX, u32::MAX);
 
 fn dark() -> Histogram {
     histogram(&GrayImage::from_pixel(32, 32, image::Luma([9])), 255.0, 1.0, WITH)
+}
+
+/// Registers of a sensor: what was written last, by address.
+#[derive(Default)]
+struct Registers(RefCell<BTreeMap<Vec<u8>, Vec<u8>>>);
+
+impl Registers {
+    /// The number at an address, whose bytes may be at adjacent ones.
+    fn number(&self, addresses: &[&[u8]]) -> u32 {
+        let map = self.0.borrow();
+        let bytes = addresses.iter().flat_map(|&at| map.get(at).expect("a written register"));
+        bytes.fold(0, |number, &byte| 256 * number + u32::from(byte))
+    }
+}
+
+/// A bus to them, of addresses of so many bytes.
+struct Bus<'a>(&'a Registers, usize);
+
+impl ErrorType for Bus<'_> {
+    type Error = ErrorKind;
+}
+
+impl I2c for Bus<'_> {
+    fn transaction(&mut self, _: u8, operations: &mut [Operation<'_>]) -> Result<(), ErrorKind> {
+        for operation in operations {
+            let Operation::Write(bytes) = operation else { return Err(ErrorKind::Bus) };
+            let (at, value) = bytes.split_at(self.1);
+            self.0.0.borrow_mut().insert(at.to_vec(), value.to_vec());
+        }
+        Ok(())
+    }
+}
+
+/// How often the setting changes under a light, of so many grey levels for a line at no gain, and the mean
+/// and the exposure where it comes to rest, lines and gain.
+fn at_rest<S: ExposureControl<Error: Debug>>(
+    mut sensor: S,
+    set: impl Fn() -> (u32, f64),
+    grey_per_line: f64,
+) -> (usize, f64, (u32, f64)) {
+    let mut auto = AutoExposure::new(ExposureLimits::of_sensor(&sensor));
+    let mut command = Some(auto.current());
+    let (mut changes, mut quiet, mut mean) = (0, 0, 0.0);
+    for _ in 0..120 {
+        if let Some(ExposureCommand { exposure_us, gain_16ths }) = command {
+            sensor.set_exposure(exposure_us, gain_16ths).expect("the bus takes it");
+            (changes, quiet) = (changes + 1, 0);
+        }
+        quiet += 1;
+        let (lines, gain) = set();
+        mean = (grey_per_line * f64::from(lines) * gain).min(255.0);
+        let mut histogram = Histogram::new();
+        histogram.line(0, &[mean as u8; 64]);
+        command = auto.frame([&histogram, &histogram]);
+    }
+    assert!(quiet > 60, "it comes to rest: {quiet} quiet frames at {:?}, {grey_per_line} a line", set());
+    (changes, mean, set())
+}
+
+#[test]
+fn sensors_come_to_rest_in_their_own_steps() {
+    let hm01b0 = |grey_per_line: f64| {
+        let registers = Registers::default();
+        let set = || {
+            let lines = registers.number(&[&[0x02, 0x02], &[0x02, 0x03]]);
+            (lines, f64::from(1 << (registers.number(&[&[0x02, 0x05]]) >> 4)))
+        };
+        at_rest(Hm01b0::new(Bus(&registers, 2), 3_000_000), set, grey_per_line)
+    };
+    let mt9v034 = |grey_per_line: f64| {
+        let registers = Registers::default();
+        let set = || (registers.number(&[&[0x0b]]), f64::from(registers.number(&[&[0x35]])) / 16.0);
+        at_rest(Mt9v034::new(Bus(&registers, 1), 0x48, 26_600_000), set, grey_per_line)
+    };
+    // The longest exposure, 258 lines, is half as much again too short.
+    let (_, mean, (lines, gain)) = hm01b0(67.0 / 258.0);
+    assert!((mean - 100.0).abs() < 13.0 && gain == 2.0 && lines < 258, "{mean} {lines} {gain}");
+    // A row is too short, and two are too long.
+    let (_, mean, (rows, gain)) = mt9v034(67.0);
+    assert!((mean - 100.0).abs() < 13.0 && rows == 1 && gain > 1.0, "{mean} {rows} {gain}");
+    // Under all lights, from far too dark to far too bright.
+    for tenths in -70..55 {
+        let grey_per_line = (f64::from(tenths) / 10.0).exp();
+        let (most, (changes, mean, (rows, gain))) = (12, mt9v034(grey_per_line));
+        assert!(changes <= most, "{changes} changes");
+        // A row at no gain and all rows at all gain are the ends.
+        let is_end = rows == 1 && gain == 1.0 || rows >= 522 && gain == 4.0;
+        assert!(is_end || (mean - 100.0).abs() <= 13.0, "{grey_per_line}: {mean} of {rows} rows, {gain}");
+        let (changes, mean, (lines, gain)) = hm01b0(grey_per_line);
+        assert!(changes <= most, "{changes} changes");
+        let is_end = lines == 2 || lines == 258 && gain == 8.0;
+        // Of two to five lines the steps are wider than the band.
+        let least = if lines < 6 { 66.0 } else { 87.0 };
+        assert!(
+            is_end || (least..=113.0).contains(&mean),
+            "{grey_per_line}: {mean} of {lines} lines, {gain}"
+        );
+    }
 }

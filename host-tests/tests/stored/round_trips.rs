@@ -3,7 +3,7 @@
 use nalgebra::{Matrix3, Point3, Rotation3, Unit, Vector3};
 use serde::{Serialize, de::DeserializeOwned};
 use std::fmt::Debug;
-use stereopsis::camera::{LineFormat, Mt9v034Window, PixelFormat};
+use stereopsis::camera::{GainSteps, LineFormat, Mt9v034Window, PixelFormat};
 use stereopsis::depth::{DepthRange, DepthScale, TemporalConfig};
 use stereopsis::features::{Epipolar, FeatureConfig, Level, MatchConfig};
 use stereopsis::focus::{Breathing, FocusCalibration, FocusConfig, MicroLens, ThinLens};
@@ -91,7 +91,13 @@ fn configurations() {
     exact(Crop::Alpha(0.5_f32));
     exact(LineFormat { width: 320, height: 240, pixel: PixelFormat::Grey8 });
     exact(Level::FULL.downsampled::<4>());
-    exact(ExposureLimits { least_us: 20, most_us: 8000, most_gain_16ths: 64 });
+    exact(ExposureLimits {
+        least_us: 20,
+        most_us: 8000,
+        most_gain_16ths: 64,
+        exposure_step_us: 32,
+        gain_steps: GainSteps::Doublings,
+    });
     exact(Mt9v034Window { left: 56, top: 0, ..Mt9v034Window::WHOLE });
 }
 

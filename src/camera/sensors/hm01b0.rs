@@ -7,7 +7,7 @@
 //! A line takes 376 clocks. The exposure is whole lines, at most two fewer than the frame has. What is
 //! written after [`Hm01b0::initialise`] takes effect with the frame after the group command.
 
-use super::{ExposureControl, Outcome, SensorError, within};
+use super::{ExposureControl, GainSteps, Outcome, SensorError, within};
 
 const MODEL_ID_HIGH: u16 = 0x0000;
 const MODEL_ID_LOW: u16 = 0x0001;
@@ -214,6 +214,11 @@ macro_rules! driver {
             (self.lines_us(2), self.lines_us(self.frame_lines.saturating_sub(2)))
         }
 
+        /// Returns the time of a line, microseconds, rounded up: the step of the exposure.
+        pub fn exposure_step_us(&self) -> u32 {
+            self.lines_us(1)
+        }
+
         /// Sets the exposure, rounded to whole lines, and the gain in sixteenths, rounded down to 1, 2, 4 or
         /// 8.
         pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Outcome<I> {
@@ -265,4 +270,4 @@ macro_rules! driver {
     };
 }
 
-drivers!(driver, Hm01b0, AsyncHm01b0, "HM01B0", 128);
+drivers!(driver, Hm01b0, AsyncHm01b0, "HM01B0", 128, Doublings);

@@ -15,7 +15,7 @@
 /// A sensor's two drivers and its exposure control. `$driver!` makes one driver, of a bus that blocks or of
 /// one that is awaited.
 macro_rules! drivers {
-    ($driver:ident, $blocking:ident, $awaited:ident, $chip:literal, $most_gain_16ths:literal) => {
+    ($driver:ident, $blocking:ident, $awaited:ident, $chip:literal, $most_gain:literal, $steps:ident) => {
         $driver!(
             $blocking,
             concat!("Driver of the ", $chip, " on an I2C bus."),
@@ -46,7 +46,15 @@ macro_rules! drivers {
             }
 
             fn most_gain_16ths(&self) -> u16 {
-                $most_gain_16ths
+                $most_gain
+            }
+
+            fn exposure_step_us(&self) -> u32 {
+                self.exposure_step_us()
+            }
+
+            fn gain_steps(&self) -> GainSteps {
+                GainSteps::$steps
             }
 
             fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {
@@ -115,6 +123,18 @@ fn within<B>(value: u32, least: u32, most: u32) -> Result<u32, SensorError<B>> {
     if (least..=most).contains(&value) { Ok(value) } else { Err(SensorError::OutOfRange { least, most }) }
 }
 
+/// Steps in which a sensor sets its gain.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub enum GainSteps {
+    /// Sixteenths, or finer.
+    #[default]
+    Sixteenths,
+    /// Doublings: once, twice, four times, and so on.
+    Doublings,
+}
+
 /// Exposure and gain of a sensor, for an automatic exposure.
 pub trait ExposureControl {
     /// Error of the sensor driver.
@@ -125,6 +145,13 @@ pub trait ExposureControl {
 
     /// Largest gain in sixteenths: 64 is fourfold. The least is 16.
     fn most_gain_16ths(&self) -> u16;
+
+    /// Step of the exposure, microseconds, rounded up: so many times that are at least so many whole steps.
+    /// 1 where any exposure can be set.
+    fn exposure_step_us(&self) -> u32;
+
+    /// Steps of the gain.
+    fn gain_steps(&self) -> GainSteps;
 
     /// Sets exposure and gain for a coming frame, which the sensor determines. The exposure is rounded to a
     /// supported value.
@@ -140,6 +167,14 @@ impl<T: ExposureControl + ?Sized> ExposureControl for &mut T {
 
     fn most_gain_16ths(&self) -> u16 {
         (**self).most_gain_16ths()
+    }
+
+    fn exposure_step_us(&self) -> u32 {
+        (**self).exposure_step_us()
+    }
+
+    fn gain_steps(&self) -> GainSteps {
+        (**self).gain_steps()
     }
 
     fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Result<(), Self::Error> {

@@ -13,7 +13,7 @@ mod settings;
 
 pub use settings::{Mt9v034Binning, Mt9v034Mode, Mt9v034Pattern, Mt9v034Window};
 
-use super::{ExposureControl, Outcome, SensorError, within};
+use super::{ExposureControl, GainSteps, Outcome, SensorError, within};
 use embedded_hal::digital::OutputPin;
 
 const CHIP_VERSION: u8 = 0x00;
@@ -205,6 +205,11 @@ macro_rules! driver {
             (self.rows_us(1), self.rows_us(most))
         }
 
+        /// Returns the time of a row, microseconds, rounded up: the step of the exposure.
+        pub fn exposure_step_us(&self) -> u32 {
+            self.rows_us(1)
+        }
+
         /// Sets the exposure, rounded to whole rows, and the gain in sixteenths. The gain takes effect with
         /// the next frame, the exposure with the one after it.
         pub $($async)? fn set_exposure(&mut self, exposure_us: u32, gain_16ths: u16) -> Outcome<I> {
@@ -248,4 +253,4 @@ macro_rules! driver {
     };
 }
 
-drivers!(driver, Mt9v034, AsyncMt9v034, "MT9V034", 64);
+drivers!(driver, Mt9v034, AsyncMt9v034, "MT9V034", 64, Sixteenths);

@@ -147,9 +147,7 @@ fn set_unit<T: Real>(
     }
     let solved =
         Problem { matches: &*matches, baseline: T::ZERO, doubt: T::ZERO }.solve(*pose, Free::Nothing);
-    motion.has_unit = true;
-    motion.reported_pose = Pose::identity();
-    motion.velocity = Some(*pose);
+    motion.begin_at_unit();
     map.add_new(now);
     let (covariance, residual) = (covariance6(&solved.information), solved.residual(0));
     Step { motion: since, covariance, state: State::Tracked, inliers: solved.kept, residual, ..shown }

@@ -43,6 +43,12 @@ impl<T: Real> MotionModel<T> {
         *self = Self { reported_pose, has_unit: is_pair, last_step, ..Self::new() };
     }
 
+    /// The way so far has become one camera's unit of length, and its end the place of the map. What it went
+    /// in the last frame alone is not known: the whole way would predict the next one many times too far.
+    pub fn begin_at_unit(&mut self) {
+        (self.has_unit, self.reported_pose, self.velocity) = (true, Pose::identity(), None);
+    }
+
     /// The pose that the last velocity predicts.
     pub fn predicted(&self) -> Option<Pose<T>> {
         self.velocity.map(|velocity| self.reported_pose.then(&velocity))
@@ -110,5 +116,45 @@ impl<T: Real> MotionModel<T> {
     pub fn rebase(&mut self, pose: &Pose<T>, velocity: Pose<T>) {
         self.reported_pose = pose.inverse().then(&self.reported_pose).orthonormal();
         self.velocity = Some(velocity.orthonormal());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{Matrix3, Vector3};
+
+    fn step(z: f64) -> Pose<f64> {
+        Pose::of_parts(Matrix3::identity(), Vector3::new(0.0, 0.0, z))
+    }
+
+    #[test]
+    fn the_way_to_the_unit_predicts_no_step() {
+        let mut motion = MotionModel::<f64>::new();
+        motion.reset(false);
+        motion.begin_at_unit();
+        assert!(motion.has_unit && motion.predicted().is_none());
+        let velocity = motion.velocity_after(step(0.25), State::Tracked);
+        motion.rebase(&step(0.25), velocity);
+        motion.reported_pose = Pose::identity();
+        assert_eq!(motion.predicted(), Some(step(0.25)));
+    }
+
+    #[test]
+    fn the_last_step_that_is_known_is_the_measure() {
+        let mut motion = MotionModel::<f64>::new();
+        motion.reset(false);
+        assert_eq!(motion.last_step, 1.0);
+        for (state, length, expected) in [
+            (State::Tracked, 0.25, 0.25),
+            (State::RotationOnly, 1e-17, 0.25),
+            (State::TranslationUnknown, 0.0, 0.25),
+            (State::Uncertain, 0.5, 0.25),
+            (State::Found, 0.75, 0.75),
+            (State::Tracked, 0.0, 0.75),
+        ] {
+            let _ = motion.velocity_after(step(length), state);
+            assert_eq!(motion.last_step, expected, "{state:?}");
+        }
     }
 }

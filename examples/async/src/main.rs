@@ -32,7 +32,7 @@ const LINE: usize = 2 * WIDTH;
 const SLOTS: usize = 16;
 /// Lines' times between two frames, as in a sensor's vertical blanking.
 const BLANKING: u16 = 16;
-/// Ticks of the 25 MHz timer from line to line. QEMU counts 40 instructions a tick: a row takes 66 000.
+/// Ticks of the 25 MHz timer from line to line. QEMU counts 40 instructions a tick: a row takes 59 400.
 const LINE_TICKS: u32 = 2500;
 /// Frames that are shown.
 const FRAMES: u32 = 3;

@@ -76,7 +76,7 @@ impl ExposureLimits {
 /// setting below the target stays.
 ///
 /// The caller passes the resulting [`ExposureCommand`] to both sensors
-/// ([`ExposureControl`](crate::camera::ExposureControl)).
+/// ([`ExposureControl`]).
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct AutoExposure {

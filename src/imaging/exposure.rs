@@ -68,7 +68,8 @@ impl ExposureLimits {
 /// sixteenths makes up what whole steps of the exposure leave, and the exposure is shortened by what the next
 /// doubling of a gain is too much. With mean grey `m`, `light <- light x
 /// clamp(TARGET / m, 1/2, 2)`; where more than [`AutoExposure::MOST_SATURATED`] per mille of the pixels are
-/// saturated, the light decreases by a quarter to a half.
+/// saturated, the light decreases by a quarter to a half; it is not raised so far that they would be so
+/// again.
 ///
 /// After a change, [`AutoExposure::DELAY`] frames are ignored, as sensors apply settings late. Within
 /// [`AutoExposure::DEAD_BAND`] of the target nothing changes. A linear response therefore reaches the band in
@@ -135,10 +136,12 @@ impl AutoExposure {
         }
         // 16ths of a microsecond at no gain.
         let light = u64::from(self.current.exposure_us) * u64::from(self.current.gain_16ths);
-        let most = if is_saturated { light - light / 4 } else { light * 2 };
+        let most = if is_saturated { light - light / 4 } else { room(light, left).min(room(light, right)) };
         let wanted = (light * target / mean).clamp(light / 2, most);
         let next = self.split(wanted);
-        if next == self.current {
+        // What is brightest leaves so little room that it would be taken again and again.
+        let is_full = wanted > light && wanted - light <= light / 16;
+        if next == self.current || is_full {
             return None;
         }
         (self.current, self.waiting) = (next, Self::DELAY);
@@ -170,6 +173,22 @@ impl AutoExposure {
         let exposure_us = if takes_longer { longer_us } else { exposure_us };
         ExposureCommand { exposure_us, gain_16ths: gain as u16 }
     }
+}
+
+/// To how much light a frame's light can be raised, at most to twice as much, before more pixels than are
+/// allowed come near to saturation: a lamp or a window that was saturated would be so again.
+fn room(light: u64, seen: &Histogram) -> u64 {
+    const NEAR: u64 = 240;
+    let most = u64::from(seen.count()) * u64::from(AutoExposure::MOST_SATURATED) / 1000;
+    let mut brighter = 0;
+    for (bin, &pixels) in seen.bins().iter().enumerate().rev() {
+        brighter += u64::from(pixels);
+        if brighter > most {
+            let brightest = 16 * bin as u64 + 15;
+            return (light * NEAR / brightest).clamp(light, light * 2);
+        }
+    }
+    light * 2
 }
 
 #[cfg(test)]
@@ -337,6 +356,24 @@ mod tests {
         for grey_per_ms in 1..1000 {
             let ExposureCommand { exposure_us, gain_16ths } = rest(limits, grey_per_ms).0;
             assert!(gain_16ths.is_power_of_two() && exposure_us.is_multiple_of(100));
+        }
+    }
+
+    #[test]
+    fn a_window_is_not_saturated_again_and_again() {
+        // A fifth of the picture is so many times as bright as the rest.
+        for times in [2, 3, 5, 8, 16] {
+            let mut auto = AutoExposure::new(LIMITS);
+            let mut changes = [0; 2];
+            for frame in 0..200 {
+                let ExposureCommand { exposure_us, gain_16ths } = auto.current();
+                let light = exposure_us * u32::from(gain_16ths) / 16;
+                let [rest, window] = [1, times].map(|times| (light * times / 40).min(255) as u8);
+                let seen = of(&[(rest, 12), (window, 3)]);
+                changes[frame / 100] += usize::from(auto.frame([&seen, &seen]).is_some());
+                assert!(frame < 100 || window < Histogram::SATURATED, "{times}");
+            }
+            assert_eq!(changes[1], 0, "{times}: it swings");
         }
     }
 }

@@ -29,6 +29,11 @@ fn a_pair_that_cannot_be_matched_is_named_and_the_others_are_matched() {
     let told = text(&stereo(args).stderr);
     assert!(told.contains("000002 of 3 is being") && told.contains("000003 of 3 is there already"), "{told}");
 
+    // What is wrong with the command line is wrong for all.
+    let usage = stereo(args.into_iter().chain(["--depth-unit", "1/256"]));
+    let told = text(&usage.stderr);
+    assert!(usage.status.code() == Some(2) && told.contains("--depth-unit: is of depths"), "{told}");
+
     // What the first one fails of the others are not tried for.
     cut("f2");
     let other = at(&bench, "other");

@@ -23,14 +23,10 @@ fn swapped_cameras_are_refused_unless_forced() {
     let run = stereo(&swapped);
     assert!(run.status.success() && text(&run.stderr).contains("swapped"), "{}", text(&run.stderr));
     assert_eq!(json(&bench.path("out/summary.json"))["pair"]["fault"], "swapped");
-}
-
-#[test]
-fn swapped_cameras_have_no_search_that_is_found() {
-    let bench = Bench::new();
-    let mut swapped = arguments(&bench, "b.png", "a.png", "auto");
-    bench.refused(&swapped, "exchange left and right");
-    swapped.push("--force".into());
+    // No search is found for them.
+    for word in swapped.iter_mut().filter(|word| *word == "64") {
+        *word = "auto".into();
+    }
     bench.refused(&swapped, "give a number with --force");
 }
 

@@ -27,10 +27,11 @@ pub(super) fn is_one(text: &str) -> bool {
 
 /// Whether the file has such matrices as numbers. `P1` in YAML is followed by a list or a mapping.
 pub(super) fn has_numbers_of_both(text: &str) -> bool {
-    let is_number = |matrix: Matrix<'_>| {
-        matrix.numbers.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok())
-    };
-    bare(text).is_some() || labelled(text).any(|(_, matrix)| is_number(matrix))
+    bare(text).is_some() || labelled(text).any(|(_, matrix)| starts_with_number(matrix.numbers))
+}
+
+fn starts_with_number(text: &str) -> bool {
+    text.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok())
 }
 
 /// `P0: ...`, `P_rect_00: ...` or `P1_roi: ...`, with the camera's number; other labels (Tr, R_rect, ...) say
@@ -59,19 +60,14 @@ pub(super) fn counts_from_one(text: &str) -> bool {
 
 /// Whether a line has this label and a number after it.
 fn has_numbers(text: &str, wanted: &str) -> bool {
-    text.lines().filter_map(|line| line.split_once(':')).any(|(label, numbers)| {
-        let first = numbers.split_ascii_whitespace().next();
-        label.trim() == wanted && first.is_some_and(|word| word.parse::<f64>().is_ok())
-    })
+    let mut labelled = text.lines().filter_map(|line| line.split_once(':'));
+    labelled.any(|(label, numbers)| label.trim() == wanted && starts_with_number(numbers))
 }
 
 /// Two lines of numbers without labels: left, then right.
 fn bare(text: &str) -> Option<[Matrix<'_>; 2]> {
     let mut lines = text.lines().zip(1..).filter(|(content, _)| !content.trim().is_empty());
     let (left, right) = (lines.next()?, lines.next()?);
-    let starts_with_number = |content: &str| {
-        content.split_ascii_whitespace().next().is_some_and(|word| word.parse::<f64>().is_ok())
-    };
     let only_two = lines.next().is_none();
     (only_two && starts_with_number(left.0) && starts_with_number(right.0)).then_some([
         Matrix { label: "left", line: left.1, numbers: left.0 },

@@ -20,6 +20,11 @@ impl Failure {
         Self { line: line.into(), is_usage: true }
     }
 
+    /// The same of a part of the work, which is named first.
+    pub fn of(self, part: &str) -> Self {
+        Self { line: format!("{part}: {}", self.line), ..self }
+    }
+
     /// Whether the command line is wrong.
     pub fn is_usage(&self) -> bool {
         self.is_usage

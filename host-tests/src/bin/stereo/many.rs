@@ -87,19 +87,17 @@ pub fn run(
         let input = input?;
         let frame = format!("{number:06}");
         let one = MatchArgs { out: args.out.join(&frame), ..args.clone() };
-        let mark = Mark::new(input.bytes()?.iter().chain(&beside), &settings);
-        let is_done = mark.is_in(&one.out);
+        let mark = input.bytes().map(|bytes| Mark::new(bytes.iter().chain(&beside), &settings));
+        let is_done = mark.as_ref().is_ok_and(|mark| mark.is_in(&one.out));
         let what = if is_done { "is there already" } else { "is being matched" };
         if !args.quiet {
             remark(&format!("{frame}{of} {what}: {}", input.name()));
         }
-        let mark = (!is_done).then_some(&mark);
-        match do_one(&one, &input, &frame, mark, watch.as_mut()) {
+        let todo = mark.map(|mark| Some(mark).filter(|_| !is_done));
+        match todo.and_then(|mark| do_one(&one, &input, &frame, mark.as_ref(), watch.as_mut())) {
             Ok(()) => lines.push(Line::of(&one.out, frame, input.name())?),
             // What the first pair fails of the others are likely to fail of, too.
-            Err(error) if error.is_usage() || lines.is_empty() => {
-                return Err(Failure::new(format!("{frame}: {error}")));
-            }
+            Err(error) if error.is_usage() || lines.is_empty() => return Err(error.of(&frame)),
             Err(error) => {
                 remark(&format!("{frame}: {error}"));
                 lines.push(Line::failed(frame.clone(), input.name(), &error));

@@ -9,7 +9,7 @@ pub(super) type Tree = Value;
 
 /// The documents of a file: several in YAML, one in JSON and XML; or why it has none.
 pub(super) fn read(text: &str) -> Result<Vec<Tree>, String> {
-    let text = text.trim_start_matches('\u{feff}').trim_start();
+    let text = text.trim_start();
     if text.starts_with('<') {
         // The parser calls itself for each element in another.
         if depth(text) > DEPTH {

@@ -117,9 +117,13 @@ fn an_interrupted_run_leaves_nothing() {
         walk.args(["walk", "--frames", "2000", "--out"]).arg(bench.path("new/walk"));
         walk.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
     };
-    let end = |walk: Child, signal: &str| {
-        let sent = Command::new("kill").args([signal, &walk.id().to_string()]).status();
-        assert!(sent.expect("kill starts").success());
+    let end = |mut walk: Child, signal: &str| {
+        // Again until it ends: before `env` has set signals to their defaults one may be ignored.
+        while walk.try_wait().expect("a child").is_none() {
+            let sent = Command::new("kill").args([signal, &walk.id().to_string()]).status();
+            assert!(sent.expect("kill starts").success());
+            std::thread::sleep(Duration::from_millis(20));
+        }
         let run = walk.wait_with_output().expect("it ends");
         assert!(before == bench.everything(), "{signal} left something behind");
         run

@@ -243,10 +243,11 @@ fn select<S: SgmParameters, const MOST: usize>(
         let workspace = view_mut::<u32, u8>(frame.workspace.costs());
         frame.backend.sgm_cost::<S, MOST>(&mut work, CostWork { is_first: bottom == 0, lines, workspace });
     }
+    let here = row.map_or(&[][..], guide);
     if S::WITHIN_EDGES {
         let (above, below) = split_mut(rest, width * stride);
         let inside = |y: &usize| *y < usize::from(config.height);
-        let [here, next] = [2, 1].map(|up| bottom.checked_sub(up).filter(inside).map_or(&[][..], guide));
+        let next = bottom.checked_sub(1).filter(inside).map_or(&[][..], guide);
         let guides = [here, next, seen.map_or(&[][..], |[left, _]| left[2])];
         frame.backend.sgm_within_edges::<MOST>(&mut work, EdgeWork { guides, above, below });
     }
@@ -256,7 +257,7 @@ fn select<S: SgmParameters, const MOST: usize>(
     if let Some(row) = row {
         let flags = frame.flags.row_mut(row);
         frame.backend.fill_bytes(flags, PixelFlags::CLEAR.bits());
-        let guide = Guide { here: guide(row), above: row.checked_sub(1).map(guide), row };
+        let guide = Guide { here, above: row.checked_sub(1).map(guide), row };
         let ForWinners { winners, margins, workspace } = frame.workspace.for_winners(config.needs_margins());
         work.workspace = workspace;
         let unique = Unique::new(config.checks.uniqueness_percent, flags, margins);

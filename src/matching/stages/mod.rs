@@ -66,6 +66,7 @@ use super::backend::BY_CAPACITY;
 use super::backend::loops::fill_bytes;
 use super::memory::Rows5;
 use super::method::{Block, External, Fast, Frame, Method, Sgm, SgmEdge, SgmLean, Step, Steps};
+use core::hint::black_box;
 
 /// The stages of a method, compiled with this crate, once for each capacity that has code of its own: a
 /// program is linked without the code for numbers of candidates that its matchers have no room for, however
@@ -154,7 +155,9 @@ fn finish_row<S: Method, const MOST: usize>(
         fill::undo_fill(frame, newest);
         median::take_medians(frame, newest);
     }
-    S::select::<MOST>(frame, bottom, lines, newest.filter(|&row| row < height));
+    // The compiler would write all of the selection twice: once for the first lines, which bring no row out.
+    let row = black_box(newest.filter(|&row| row < height));
+    S::select::<MOST>(frame, bottom, lines, row);
     let Some(newest) = newest else { return };
     if newest < height {
         texture::flag_untextured::<S>(frame, newest);

@@ -39,7 +39,11 @@ pub(super) fn enter<S: SgmParameters, const WORDS: usize, const ALL: bool, const
         let all = Cell::from_mut(others.as_flattened_mut()).as_slice_of_cells().as_chunks::<NUMBERS>().0;
         let before = part(all, ..words);
         if x == 0 {
-            (0..LANES).for_each(|lane| shift_in::<S>((right, count), lane * words, before, before));
+            let mut column = 0;
+            while column < LANES * words {
+                shift_in::<S>((right, count), column, before, before);
+                column += words;
+            }
         } else {
             // The last groups stay: the first of them stands one column before this pixel.
             for (to, from) in before.iter().zip(part(all, GROUPS.saturating_sub(words)..)) {

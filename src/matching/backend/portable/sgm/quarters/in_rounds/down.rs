@@ -1,5 +1,6 @@
 //! The path from above.
 
+use crate::matching::backend::loops::keep_length;
 use crate::matching::backend::portable::sgm::quarters::columns::{column, words};
 use crate::matching::backend::portable::sgm::quarters::rounds;
 use crate::matching::backend::portable::sgm::quarters::steps::Steps;
@@ -22,24 +23,26 @@ pub(super) fn down<const WORDS: usize, const ALL: bool>(work: &mut PathWork<'_>,
     let sums = Cell::from_mut(view_mut::<u8, u32>(work.sums)).as_slice_of_cells();
     let is_odd = !guide.row.is_multiple_of(2);
     let (from, to) = if is_odd { (0, COLUMNS_OFF) } else { (COLUMNS_OFF, 0) };
-    let above = guide.above.unwrap_or(guide.here);
+    // A row of no pixels in place of none: asked for once, the loop would be written out twice.
+    let above = keep_length(guide.above.unwrap_or_default());
     for i in 0..work.width {
         let x = if is_odd { last - i } else { i };
         let at = |volume, x: usize| column(volume, x * count, count);
-        let (Some(&here), Some(&above)) = (guide.here.get(x), above.get(x)) else { return };
+        let Some(&here) = guide.here.get(x) else { return };
         let (Some(costs), Some(sums), Some(kept)) =
             (column(costs, x * count, count), at(sums, x), at(tops, x + to))
         else {
             return;
         };
-        let mut least = 0;
-        if guide.above.is_some() {
+        let (mut change, mut least) = (0, 0);
+        if let Some(&above) = above.get(x) {
+            change = here.abs_diff(above);
             let two = [x.saturating_sub(COLUMNS_OFF), (x + COLUMNS_OFF).min(last)];
             let [Some(one), Some(other)] = two.map(|x| at(tops, x + from)) else { return };
             least = rounds::average_two([one, other], kept);
         } else {
             kept.iter().for_each(|path| path.set(0));
         }
-        rounds::down(&steps, (here.abs_diff(above), least), costs, kept, sums);
+        rounds::down(&steps, (change, least), costs, kept, sums);
     }
 }

@@ -18,7 +18,9 @@ use core::ops::Range;
 ///   surface that goes on through so many rows has them.
 ///
 /// Along paths a band's first rows lack what a path from above has gathered farther up: under 1 % of the
-/// pixels differ by over a pixel, or in having an answer, with four bands of 240 rows.
+/// pixels differ by over a pixel, or in having an answer, with four bands of 240 rows. Only half as many lines
+/// are taken there for the speckle filter and the median: a surface mostly has several answers in a row.
+/// On 15 real pairs `Sgm` misses 3.32 % in one band, and 3.44 % in two; 3.40 % if all of the lines are taken.
 ///
 /// A pipeline's work is that on its lines, so a frame is split into bands of equal lines, not of equal rows:
 /// 120 rows of `Block` with the default checks, which take 34 lines above and 10 below, go to two cores as 72
@@ -72,7 +74,8 @@ impl Band {
     pub fn split<S: Method>(config: &Config, most: u16) -> Bands {
         let height = usize::from(config.height);
         let below = Pipeline::<S, 0, 0>::LATENCY;
-        let above = below + reach_of_checks(&config.checks);
+        let reach = reach_of_checks(&config.checks);
+        let above = below + if S::ALONG_PATHS { reach / 2 } else { reach };
         let bands = |lines| Bands { from: 0, height, above, below, lines };
         let most = usize::from(most).max(1);
         // Bands of more lines are no more bands. One of as many lines as the frame has is enough, and fewer

@@ -33,7 +33,7 @@
 //! * [`interpolate`]: poses between two known ones.
 //! * [`twin`]: each stage again, naively, to hold the core to. [`dump`]: its rows as files.
 //! * [`winners`]: a model of the block of gates, with faults.
-//! * [`map`], [`depth_samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
+//! * [`map`], [`samples`], [`pfm`], [`ply`], [`colour`], [`matches_picture`], [`epipolar_picture`],
 //!   [`output`], [`report`]: results as files. [`unfinished`]: what an interruption takes away. [`live`]: the
 //!   live page. [`command_line`]: errors in one line.
 
@@ -46,7 +46,6 @@ pub mod command_line;
 pub mod correspond;
 pub mod correspond_refine;
 pub mod degenerate;
-pub mod depth_samples;
 pub mod dump;
 pub mod epipolar_picture;
 pub mod eval;
@@ -71,6 +70,7 @@ pub mod rectify;
 pub mod report;
 pub mod rows;
 pub mod run;
+pub mod samples;
 pub mod sparsification;
 pub mod turned;
 pub mod two_view;

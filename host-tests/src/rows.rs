@@ -20,7 +20,8 @@ pub struct Rows {
     pub error_px: f64,
     /// Its standard deviation.
     pub sigma_px: f64,
-    /// How much lower the right image shows what is in the middle of the left one, px.
+    /// How much lower the right image shows what the left one shows, px: the root mean square over the image
+    /// of what the pitch does.
     pub lower_px: f64,
     /// By how much the right camera is turned about the axis that points right, degrees; absent when no
     /// calibration tells the focal length.
@@ -58,17 +59,17 @@ impl Rows {
         size: ImageSize,
         matches: usize,
     ) -> Self {
-        // What each angle's deviation alone would be in rows.
-        let alone = |axis: usize| {
+        // What an angle alone does to rows.
+        let alone = |axis: usize, rad: [f64; 3]| {
             let mut rotation_rad = [0.0; 3];
-            rotation_rad[axis] = found.sigma_rad[axis];
+            rotation_rad[axis] = rad[axis];
             RowAlignment { rotation_rad, sigma_rad: [0.0; 3] }.row_error_px(camera, size)
         };
         let degrees = |rad: f64| is_calibrated.then(|| rad.to_degrees());
         Self {
             error_px: found.row_error_px(camera, size),
-            sigma_px: (0..3).map(|axis| alone(axis).powi(2)).sum::<f64>().sqrt(),
-            lower_px: -found.rotation_rad[0] * camera.focal_px().1,
+            sigma_px: (0..3).map(|axis| alone(axis, found.sigma_rad).powi(2)).sum::<f64>().sqrt(),
+            lower_px: alone(0, found.rotation_rad).copysign(-found.rotation_rad[0]),
             pitch_deg: degrees(found.rotation_rad[0]),
             pitch_sigma_deg: degrees(found.sigma_rad[0]),
             roll_deg: found.rotation_rad[2].to_degrees(),

@@ -1,6 +1,5 @@
 //! Stixels and sectors drawn on the left image.
 
-use crate::colour::viridis;
 use image::{Rgb, RgbImage};
 use stereopsis::obstacles::{ObstacleConfig, ObstaclesView, SectorState, StixelKind};
 
@@ -10,9 +9,9 @@ pub(super) const OBSTACLE: Rgb<u8> = Rgb([0xd5, 0x5e, 0x00]);
 pub(super) const DROP: Rgb<u8> = Rgb([0xcc, 0x79, 0xa7]);
 pub(super) const BLIND: Rgb<u8> = Rgb([0x60, 0x60, 0x60]);
 
-/// The left image with the ground that is seen in green, obstacles in the colours of their disparity (near is
-/// bright), drops in purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind
-/// grey. The bright part of an obstacle's bar is the higher the nearer it is.
+/// The left image with the ground that is seen in green, obstacles in orange, the brighter the nearer, drops in
+/// purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind grey. The bright part
+/// of an obstacle's bar is the higher the nearer it is.
 pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbImage) -> RgbImage {
     let (width, height) = left.dimensions();
     let strip = (height / 10).max(8);
@@ -34,7 +33,7 @@ pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbIma
                 continue;
             }
             let share = stixel.disparity.to_f32().unwrap_or(0.0) / nearest;
-            let colour = if stixel.kind == StixelKind::Drop { DROP } else { viridis(share) };
+            let colour = if stixel.kind == StixelKind::Drop { DROP } else { obstacle(share) };
             for v in u32::from(stixel.top_row)..=u32::from(stixel.base_row).min(height - 1) {
                 let edge = v == u32::from(stixel.top_row) || v == u32::from(stixel.base_row);
                 mix(&mut picture, u, v, colour, if edge { 8 } else { 5 });
@@ -56,6 +55,12 @@ pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbIma
         }
     }
     picture
+}
+
+/// The colour of an obstacle that has so much of the nearest one's disparity.
+fn obstacle(share: f32) -> Rgb<u8> {
+    let brightness = 0.25 + 0.75 * share;
+    Rgb(OBSTACLE.0.map(|value| (f32::from(value) * brightness) as u8))
 }
 
 /// The colour at a third of its brightness.

@@ -183,7 +183,8 @@ impl ObstacleRecord {
             (None, Some(GroundRecord { pitch_sigma_deg, .. })) => {
                 let _ = write!(
                     line,
-                    "; ground seen over too few rows (pitch sure to {pitch_sigma_deg:.1} degrees)"
+                    "; ground seen over too few rows (three deviations of its pitch are {:.1} degrees, over .5)",
+                    3.0 * pitch_sigma_deg
                 );
             }
             (None, None) => line += "; no ground",

@@ -2,11 +2,11 @@
 
 use super::Accuracy;
 use crate::command_line::words;
-use crate::depth_samples::MILLIMETRE;
 use crate::map::{DisparityMap, quantile};
 use crate::pair::PairCheck;
 use crate::rows::Rows;
 use crate::run::{MethodName, Outcome};
+use crate::samples::{MILLIMETRE, Samples};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -53,6 +53,8 @@ pub struct Summary {
     pub flags: BTreeMap<&'static str, usize>,
     /// The answers' disparities; absent when there is none.
     pub disparity_px: Option<Spread>,
+    /// Answers of more than `disparity.png` can say, whose samples are its largest one.
+    pub disparity_png_clamped: usize,
     /// How sure the answers are, 1 to 207; absent when there is none. The numbers put answers in order, they
     /// are no probabilities.
     pub confidence: Option<Spread>,
@@ -206,6 +208,7 @@ impl Summary {
             answers: map.answers(),
             flags: PixelFlags::NAMES.into_iter().map(|(flag, name)| (name, map.flagged(flag))).collect(),
             disparity_px: Spread::of(&map.sorted()),
+            disparity_png_clamped: Samples::of_disparities(map).clamped,
             confidence: Spread::of(&confidences(map)),
             state_bytes: method.state_bytes(config.width, config.disparities),
             latency_lines: method.latency_lines(),

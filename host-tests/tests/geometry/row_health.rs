@@ -1,7 +1,7 @@
 //! A rig that was knocked: told by its rows, and corrected.
 
 use crate::views::rotation;
-use image::{GrayImage, Luma};
+use image::{GrayImage, Luma, imageops};
 use nalgebra::{Matrix3, Point2, Vector3};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
@@ -221,6 +221,20 @@ fn rows_of_a_pair_are_reported_with_their_uncertainty() {
     }
 }
 
+/// Moving the right image up by what is told puts its rows where the left one has them.
+#[test]
+fn a_picture_that_stands_lower_is_told_by_how_much() {
+    let (left, right) = Scene::small(SIZE.width, SIZE.height).render();
+    for lower in [1, 3, 6] {
+        let size = (u32::from(SIZE.width), u32::from(SIZE.height) - lower);
+        let part =
+            |picture: &GrayImage, from| imageops::crop_imm(picture, 0, from, size.0, size.1).to_image();
+        let told = measured([&part(&left, lower), &part(&right, 0)], None, None).expect("features");
+        let off = told.lower_px - f64::from(lower);
+        assert!(off.abs() < 0.05 + 0.03 * f64::from(lower), "{lower}: {told:?}");
+    }
+}
+
 /// Rows by the features of two pictures.
 fn measured(
     pictures: [&GrayImage; 2],
@@ -228,5 +242,6 @@ fn measured(
     camera: Option<&Camera<f64>>,
 ) -> Option<Rows> {
     let matches = PairMatches::find(pictures, valid).expect("features");
-    Rows::measure(&matches, SIZE, camera)
+    let (width, height) = pictures[0].dimensions();
+    Rows::measure(&matches, ImageSize { width: width as u16, height: height as u16 }, camera)
 }

@@ -6,15 +6,14 @@ use image::{ImageBuffer, Luma, RgbImage};
 use std::fmt::Write;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
-use stereopsis::units::Disparity;
 use stereopsis_host::colour::{ColourScale, confidence_raw, flags_raw};
 use stereopsis_host::command_line::one_line;
-use stereopsis_host::depth_samples::{DepthSamples, MILLIMETRE};
 use stereopsis_host::map::DisparityMap;
 use stereopsis_host::output::{OutputError, Staging};
 use stereopsis_host::pfm;
 use stereopsis_host::ply::{self, ColouredPoint};
 use stereopsis_host::report::{Exposure, Report, Summary};
+use stereopsis_host::samples::{MILLIMETRE, Samples};
 
 /// What is written only with a calibration. A run without one takes the files of an earlier run with it away.
 pub const WITH_DEPTH: [&str; 3] = ["depth.pfm", "depth.png", "cloud.ply"];
@@ -49,17 +48,17 @@ impl DepthFiles {
         summary: &mut Summary,
     ) -> Self {
         let unit_m = args.depth_unit.unwrap_or(MILLIMETRE);
-        let DepthSamples { samples, clamped } = DepthSamples::of(map, scale, unit_m);
-        let mut points = points(map, scale, left);
+        let Samples { samples, clamped } = Samples::of_depths(map, scale, unit_m);
+        let metres = map.depth_m(scale);
+        let max_m = args.max_depth.or(summary.depth.as_ref().and_then(|depth| depth.cloud_max_m));
+        let points = points(map, scale, left, |pixel| max_m.is_none_or(|max_m| metres[pixel] <= max_m));
         if let Some(depth) = &mut summary.depth {
-            let max_m = args.max_depth.or(depth.cloud_max_m);
-            points.retain(|point| max_m.is_none_or(|max_m| point.position_m[2] <= max_m));
             depth.png_unit_m = unit_m;
             depth.png_clamped = clamped;
             depth.cloud_max_m = max_m;
             depth.cloud_left_out = map.answers() - points.len();
         }
-        Self { metres: map.depth_m(scale), samples, points }
+        Self { metres, samples, points }
     }
 }
 
@@ -90,9 +89,7 @@ pub fn write(
     let map = report.map;
     let pixels = map.pixels();
     staging.write("disparity.pfm", |out| pfm::write(out, map.width, &pixels))?;
-    staging.write("disparity.png", |out| {
-        png(out, &grey16(map, map.disparity.iter().map(|&d| disparity_sample(d))))
-    })?;
+    staging.write("disparity.png", |out| png(out, &grey16(map, &Samples::of_disparities(map).samples)))?;
     // Of the search, not of the answers, so that two runs with the same search compare by eye.
     let first_px = f32::from(report.summary.min_disparity);
     let searched =
@@ -105,7 +102,7 @@ pub fn write(
     if let Some(DepthFiles { metres, samples, points }) = depth {
         let [depth_pfm, depth_png, cloud] = WITH_DEPTH;
         staging.write(depth_pfm, |out| pfm::write(out, map.width, metres))?;
-        staging.write(depth_png, |out| png(out, &grey16(map, samples.iter().copied())))?;
+        staging.write(depth_png, |out| png(out, &grey16(map, samples)))?;
         staging.write(cloud, |out| ply::write(out, points))?;
     }
     staging.write("report.html", |out| report.write(out))
@@ -136,6 +133,11 @@ pub fn figures(summary: &Summary) -> String {
     }
     if let Some(d) = s.disparity_px {
         let _ = writeln!(text, "disparity    {:.2} to {:.2} px, median {:.2} px", d.min, d.max, d.median);
+    }
+    if s.disparity_png_clamped > 0 {
+        let clamped = s.disparity_png_clamped;
+        let _ =
+            writeln!(text, "disparity.png {clamped} answers from 256 px on are 65535 (not in disparity.pfm)");
     }
     if let Some(z) = s.depth.as_ref().and_then(|depth| depth.found_m) {
         let _ = writeln!(text, "depth        {:.3} to {:.3} m, median {:.3} m", z.min, z.max, z.median);
@@ -175,39 +177,22 @@ pub fn place(out: &Path) -> String {
     format!("results are in {}\nopen {report} in a browser\n", one_line(&out.display().to_string()))
 }
 
-/// Disparity x 256 in 16 bits, where 0 says that there is none: an answer of 0 px becomes 1, and one of 256
-/// px and more the largest sample.
-fn disparity_sample(disparity: Disparity) -> u16 {
-    const STEP: u32 = 256 / Disparity::ONE as u32;
-    let sample = u32::from(disparity.raw()) * STEP;
-    if disparity.is_some() { u16::try_from(sample.max(1)).unwrap_or(u16::MAX) } else { 0 }
+fn grey16<'a>(map: &DisparityMap, samples: &'a [u16]) -> ImageBuffer<Luma<u16>, &'a [u16]> {
+    ImageBuffer::from_raw(map.width as u32, map.height as u32, samples).expect("a sample for each pixel")
 }
 
-fn grey16(map: &DisparityMap, samples: impl Iterator<Item = u16>) -> ImageBuffer<Luma<u16>, Vec<u16>> {
-    ImageBuffer::from_raw(map.width as u32, map.height as u32, samples.collect()).unwrap_or_default()
-}
-
-/// The answered pixels in space, with the left image's colours.
-fn points(map: &DisparityMap, scale: &DepthScale, left: &RgbImage) -> Vec<ColouredPoint> {
-    let colours = left.enumerate_pixels();
-    let all = map.disparity.iter().zip(colours).filter_map(|(&d, (u, v, colour))| {
+/// The answered pixels in space that are asked for by their number, with the left image's colours.
+fn points(
+    map: &DisparityMap,
+    scale: &DepthScale,
+    left: &RgbImage,
+    is_asked: impl Fn(usize) -> bool,
+) -> Vec<ColouredPoint> {
+    let answers = map.disparity.iter().enumerate().zip(left.enumerate_pixels());
+    let all = answers.filter_map(|((pixel, &d), (u, v, colour))| {
         // Images have at most 4096 columns and rows.
-        let point = scale.point(u as u16, v as u16, d)?;
+        let point = scale.point(u as u16, v as u16, d).filter(|_| is_asked(pixel))?;
         Some(ColouredPoint { position_m: [point.x, point.y, point.z], colour: colour.0 })
     });
     all.collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn an_answer_of_nothing_is_not_no_answer() {
-        let samples =
-            [Disparity::NONE, Disparity::from_raw(0), Disparity::from_raw(33), Disparity::from_pixels(255)];
-        assert_eq!(samples.map(disparity_sample), [0, 1, 264, 65280]);
-        assert_eq!(disparity_sample(Disparity::from_pixels(256)), u16::MAX);
-        assert_eq!(disparity_sample(Disparity::MAX), u16::MAX);
-    }
 }

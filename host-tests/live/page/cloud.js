@@ -63,16 +63,17 @@ class Cloud {
     const sorted = Uint16Array.from(found, (pixel) => depth[pixel]).sort();
     const ends = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))]);
     const places = new Float32Array(3 * found.length);
-    const focal = rig.focal_px / ratio;
     // Where nothing says where the axis is, it is in the middle.
-    const [cx, cy] = rig.centre_px?.map((at) => at / ratio) ?? [(width - 1) / 2, (height - 1) / 2];
+    const [cx, cy] = rig.centre_px ?? [width, height].map((length, axis) => (length * ratio[axis] - 1) / 2);
     found.forEach((pixel, i) => {
       const z = depth[pixel] * stepMetres;
-      const [x, y] = [pixel % width, Math.floor(pixel / width)];
+      const column = takenFrom(pixel % width, ratio[0]);
+      const row = takenFrom(Math.floor(pixel / width), ratio[1]);
       // The library looks along -Z, and its Y is up.
-      places.set([((x - cx) * z) / focal, ((cy - y) * z) / focal, -z], 3 * i);
+      places.set([((column - cx) * z) / rig.focal_px, ((cy - row) * z) / rig.focal_px, -z], 3 * i);
     });
-    this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]), focal, step };
+    this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]), step,
+      focal: rig.focal_px / ratio[1] };
     this.centre = ((ends[0] + ends[1]) / 2) * stepMetres;
   }
 

@@ -65,8 +65,7 @@ PAINT.depth = (words, { planes }) => {
 // What is known of a pixel, in one line.
 function describeFocus({ planes, ratio }, x, y) {
   const pixel = y * planes.width + x;
-  const [column, row] = [x, y].map((at) => Math.floor((at + 0.5) * ratio));
-  const place = `column ${column}, row ${row}: `;
+  const place = placeWords(ratio, x, y);
   if (planes.disparity[pixel] === NO_ANSWER) return `${place}no answer`;
   const depth = planes.depth[pixel] > 0 ? `; depth ${metresOf(planes.depth[pixel])}` : "";
   const frame = (planes.disparity[pixel] / DATA.frame_steps).toFixed(2);
@@ -93,7 +92,7 @@ async function begin() {
   stack = await decodeStack();
   const { picture, planes } = stack;
   Object.assign(state, { pair: { left: picture }, rig: { focal_px: DATA.focal_px },
-    hasDepth: DATA.focal_px !== null, ratio: DATA.columns / planes.width, describe: describeFocus });
+    hasDepth: DATA.focal_px !== null, ratio: ratioTo(planes), describe: describeFocus });
   addViews(["all in focus", "sharpest frame", "confidence", ...(DATA.depths ? ["depth"] : []),
     ...(state.hasDepth ? ["points"] : [])], "sharpest frame");
   fitPicture(planes.width, planes.height);

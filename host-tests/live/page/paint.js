@@ -124,14 +124,27 @@ function swatch(colour, name) {
   return key;
 }
 
+// How many columns and rows of the pair a pixel of the page's picture stands for. A picture that was made
+// smaller has whole rows, so that they are not as much fewer as the columns.
+const ratioTo = ({ width, height }) => [DATA.columns / width, DATA.rows / height];
+
+// The column or the row of the pair that a pixel of the page's picture was taken from, in the numbers of 32
+// bits in which that was done.
+const takenFrom = (at, ratio) => Math.floor(Math.fround((at + 0.5) * Math.fround(ratio)));
+
+// Where a pixel of the page's picture is in the pair.
+function placeWords(ratio, x, y) {
+  const [column, row] = [x, y].map((at, axis) => takenFrom(at, ratio[axis]));
+  return `column ${column}, row ${row}: `;
+}
+
 // What is known of a pixel, in one line.
 function describePixel({ planes, hasDepth, rig, ratio }, x, y) {
   const pixel = y * planes.width + x;
   const raw = planes.disparity[pixel];
   const flags = DATA.flags.filter(({ bit }) => (planes.flags[pixel] & bit) !== 0).map(({ name }) => name);
   const why = flags.length > 0 ? flags.join(", ") : "none";
-  const [column, row] = [x, y].map((at) => Math.floor((at + 0.5) * ratio));
-  const place = `column ${column}, row ${row}: `;
+  const place = placeWords(ratio, x, y);
   if (raw === NO_ANSWER) return `${place}no answer; flags: ${why}`;
   const sigmaPx = planes.sigma[pixel];
   let text = `${place}disparity ${(raw / 32).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;

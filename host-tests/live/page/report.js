@@ -107,7 +107,7 @@ async function begin() {
   whole = await decodeRun();
   const { pair, planes, truth } = whole;
   Object.assign(state, { pair, rig: DATA.rig ?? {}, hasDepth: DATA.rig !== null,
-    ratio: DATA.columns / planes.width });
+    ratio: ratioTo(planes) });
   addViews([...VIEWS.filter((name) => state.hasDepth || !["depth", "points"].includes(name)),
     ...(truth ? ["truth", "error"] : [])]);
   fitPicture(planes.width, planes.height);

@@ -51,6 +51,7 @@ fn data(report: &Report<'_>) -> io::Result<Map<String, Value>> {
     });
     let mut data = looks();
     data.insert("columns".into(), json!(map.width));
+    data.insert("rows".into(), json!(map.height));
     data.insert("rig".into(), json!(rig));
     data.insert("answers".into(), json!(url_of(map.width, answers.collect())?));
     data.insert("notes".into(), json!(url_of(map.width, notes.collect())?));

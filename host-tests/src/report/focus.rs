@@ -98,6 +98,7 @@ impl FocusReport<'_> {
         });
         let mut data = looks();
         data.insert("columns".into(), json!(self.width()));
+        data.insert("rows".into(), json!(self.picture.height()));
         data.insert("frame_steps".into(), json!(steps));
         data.insert("answers".into(), json!(explore::url_of(self.width(), answers.collect())?));
         // The farthest ones may be at the end of the lens's range, beyond all that is seen.

@@ -4,7 +4,7 @@ use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
 use super::page::{COLOURS, LivePage, failed, hold, url_of};
 use super::program::as_the_program;
-use super::{cameras, copied, focus, plan, report, video};
+use super::{cameras, copied, focus, plan, report, video, wide};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -98,6 +98,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     println!("{figures}");
     without_simd_it_says_so(&url)?;
     report::it_answers_as_the_files_do(&scene)?;
+    wide::it_answers_as_the_files_do(stereo, &scene)?;
     focus::it_answers_as_the_files_do(stereo, folder)
 }
 

@@ -1,7 +1,7 @@
 //! The report of a focus stack in a browser: what it says is what the files of the run say.
 
-use super::browser::Browser;
 use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use super::report::opened;
 use crate::steps::{Outcome, output_of};
 use image::{GrayImage, Luma, imageops};
 use serde_json::{Value, json};
@@ -43,12 +43,7 @@ pub fn it_answers_as_the_files_do(stereo: &Path, folder: &Path) -> Outcome {
     output_of(run.arg("--positions").arg(&path).arg("--out").arg(&out))?;
 
     let url = url_of(&out.join("report.html"));
-    let mut page = LivePage::of(Browser::start()?);
-    page.browser.open(&url)?;
-    page.browser.value(
-        "new Promise((done) => { const look = () => state.planes ? done(true) : setTimeout(look, 20); \
-         look(); })",
-    )?;
+    let mut page = opened(&url)?;
     pixels_are_those_of_the_files(&mut page, &out)?;
     let all = page.text("figures")?;
     hold(all.ends_with(" % of the pixels have an answer that is shown."), || format!("'{all}' is said"))?;

@@ -5,7 +5,8 @@
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
 //!   do, a step of the tests; [`faults`]: what it has to refuse. [`program`]: what the program says to the
 //!   page's command line; [`copied`]: what compilers say to its other texts; [`plan`], [`cameras`],
-//!   [`video`]: parts of the page; [`report`], [`focus`]: the reports of a run and of a focus stack.
+//!   [`video`]: parts of the page; [`report`], [`wide`], [`focus`]: the reports of a run, of one with large
+//!   images, and of a focus stack.
 
 pub mod browser;
 mod cameras;
@@ -18,6 +19,7 @@ mod plan;
 mod program;
 mod report;
 mod video;
+mod wide;
 
 pub use check::sample;
 

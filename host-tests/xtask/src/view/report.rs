@@ -15,16 +15,22 @@ const CONTROLS: usize = 9 + 3 + 1;
 /// Pixels that are read out, spread over the picture.
 const PIXELS: usize = 300;
 
-/// Opens the report of `demo` and holds it to the files beside it.
-pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
-    let url = url_of(&run.join("report.html"));
+/// Opens a report in a browser and waits until it shows what is in it.
+pub fn opened(url: &str) -> Outcome<LivePage> {
     let mut browser = Browser::start()?;
-    browser.open(&url)?;
+    browser.open(url)?;
     let mut page = LivePage::of(browser);
     page.browser.value(
         "new Promise((done) => { const look = () => state.planes ? done(true) : setTimeout(look, 20); \
          look(); })",
     )?;
+    Ok(page)
+}
+
+/// Opens the report of `demo` and holds it to the files beside it.
+pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
+    let url = url_of(&run.join("report.html"));
+    let mut page = opened(&url)?;
     pixels_are_those_of_the_files(&mut page, run)?;
     sliders_change_what_is_said(&mut page, run)?;
     let views =
@@ -47,12 +53,12 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     hold(requests == [url.as_str()], || format!("the report asks for {requests:?}"))?;
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught in the report: {thrown:?}"))?;
-    println!("the report says of {PIXELS} pixels what the files say");
     Ok(())
 }
 
-/// The disparity, the depth, the confidence and the flags of pixels all over the picture.
-fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
+/// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have fewer
+/// of them than the files.
+pub fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
     let path = run.join("disparity.pfm");
     let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
     let map = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
@@ -63,19 +69,25 @@ fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
     let depth = open("depth.png")?.into_luma16().into_raw();
     let (flags, confidence) = (open("flags.png")?.into_luma8(), open("confidence.png")?.into_luma8());
     let (flags, confidence) = (flags.into_raw(), confidence.into_raw());
-    let width = map.width;
-    let places: Vec<_> =
-        (0..PIXELS).map(|i| (i * map.values.len() / PIXELS + 37 * i) % map.values.len()).collect();
+    let size = page.browser.value("[state.planes.width, state.planes.height]")?;
+    let [width, height] = [0, 1].map(|axis| size[axis].as_u64().unwrap_or(0) as usize);
+    let count = width * height;
+    let places: Vec<_> = (0..PIXELS).map(|i| (i * count / PIXELS + 37 * i) % count.max(1)).collect();
     let asked: Vec<_> = places.iter().map(|at| [at % width, at / width]).collect();
     let said =
         page.browser.value(&format!("{}.map(([x, y]) => describePixel(state, x, y))", json!(asked)))?;
     let mut without = 0;
     for (&at, said) in places.iter().zip(said.as_array().into_iter().flatten()) {
         let said = said.as_str().unwrap_or_default();
+        // The pixel of the files that is in the middle of the page's.
+        let in_middle = |at: usize, here: usize, there: usize| (2 * at + 1) * there / (2 * here);
+        let (column, row) =
+            (in_middle(at % width, width, map.width), in_middle(at / width, height, map.height));
+        let at = row * map.width + column;
         let names = PixelFlags::NAMES.iter().filter(|(flag, _)| flags[at] & flag.bits() != 0);
         let names: Vec<_> = names.map(|(_, name)| *name).collect();
         let why = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        let begin = format!("column {}, row {}: ", at % width, at / width);
+        let begin = format!("column {column}, row {row}: ");
         let mut parts = vec![begin, format!("flags: {why}")];
         if map.values[at].is_finite() {
             // Half a digit is rounded up.
@@ -90,6 +102,7 @@ fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
             format!("the report says '{said}', the files {parts:?}")
         })?;
     }
+    println!("the report says of {PIXELS} pixels what the files say");
     hold(without > 0 && without < PIXELS, || format!("{without} of {PIXELS} pixels have no answer"))
 }
 

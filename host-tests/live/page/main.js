@@ -190,6 +190,7 @@ function namePair() {
 // depths would be wrong.
 function setRig(rig) {
   if (rig || state.isRigGiven) RIG.forEach(({ name, input }) => (input.value = rig?.[name] ?? ""));
+  setCentre(rig?.centre_px);
   state.isRigGiven = rig !== null;
 }
 

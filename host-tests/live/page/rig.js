@@ -31,7 +31,7 @@ function leaveCalibration() {
   byId("calibration").textContent = `${calibration.names.join(", ")}: not used`;
 }
 
-// The pixel where the cameras' axis is, which is known by a calibration alone.
+// The pixel where the cameras' axis is, which is known of the page's own pairs and by a calibration alone.
 function setCentre(centre) {
   state.rig.centre_px = centre ?? undefined;
   if (centre) return;

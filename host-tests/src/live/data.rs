@@ -93,21 +93,24 @@ impl Given<'_> {
             let url = format!("data:image/png;base64,{}", STANDARD.encode(png.into_inner()));
             Ok::<_, io::Error>(Picture { name: self.names[side], url })
         };
-        let rig = self.rig.map(|rig| {
-            let baseline_mm = rounded(f64::from(rig.baseline_m()) * 1000.0);
-            json!({
-                "focal_px": rig.focal_px(),
-                "baseline_mm": baseline_mm,
-                "offset_px": rig.disparity_offset_px(),
-            })
-        });
         Ok(json!({
             "left": picture(0)?,
             "right": picture(1)?,
-            "rig": rig.unwrap_or(json!({})),
+            "rig": self.rig.as_ref().map_or(json!({}), cameras),
             "disparities": self.disparities,
         }))
     }
+}
+
+/// What the scripts know of cameras.
+pub fn cameras(rig: &RectifiedRig) -> Value {
+    let (column, row) = rig.principal_point();
+    json!({
+        "focal_px": rig.focal_px(),
+        "baseline_mm": rounded(f64::from(rig.baseline_m()) * 1000.0),
+        "offset_px": rig.disparity_offset_px(),
+        "centre_px": [column, row],
+    })
 }
 
 /// Seven digits, which is what an `f32` has.

@@ -5,11 +5,11 @@
 //! it.
 //!
 //! * [`page`]: the file. `data`: the figures and pictures that its scripts look at. [`SHARED`], [`STYLE`],
-//!   [`looks`]: what the report's page has of it. [`LOOK`], [`COLOURS`]: what every page has.
+//!   [`looks`], [`cameras`]: what the report's page has of it. [`LOOK`], [`COLOURS`]: what every page has.
 
 mod data;
 
-pub use data::{Given, in_script, looks};
+pub use data::{Given, cameras, in_script, looks};
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

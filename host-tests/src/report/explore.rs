@@ -2,7 +2,7 @@
 
 use super::page::{Kind, fitted, png_url};
 use super::{Accuracy, Report};
-use crate::live::{SHARED, in_script, looks};
+use crate::live::{SHARED, cameras, in_script, looks};
 use image::{Rgb, RgbImage};
 use serde_json::{Map, Value, json};
 use std::io;
@@ -42,17 +42,10 @@ fn data(report: &Report<'_>) -> io::Result<Map<String, Value>> {
             .map(|(px, is_hidden)| (if *is_hidden { Disparity::NONE.raw() } else { in_steps(px) }, 0))
             .collect()
     });
-    let rig = report.rig.map(|rig| {
-        json!({
-            "focal_px": rig.focal_px(),
-            "baseline_mm": f64::from(rig.baseline_m()) * 1000.0,
-            "offset_px": rig.disparity_offset_px(),
-        })
-    });
     let mut data = looks();
     data.insert("columns".into(), json!(map.width));
     data.insert("rows".into(), json!(map.height));
-    data.insert("rig".into(), json!(rig));
+    data.insert("rig".into(), json!(report.rig.map(cameras)));
     data.insert("answers".into(), json!(url_of(map.width, answers.collect())?));
     data.insert("notes".into(), json!(url_of(map.width, notes.collect())?));
     data.insert("truth".into(), json!(truth.map(|truth| url_of(map.width, truth)).transpose()?));

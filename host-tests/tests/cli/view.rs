@@ -28,6 +28,7 @@ fn the_page_has_the_pair_and_the_cameras_in_it() {
     let given = &data["given"];
     assert_eq!((&given["left"]["name"], &given["disparities"]), (&"left.png".into(), &32.into()));
     assert_eq!((&given["rig"]["focal_px"], &given["rig"]["baseline_mm"]), (&50.0.into(), &100.0.into()));
+    assert_eq!(given["rig"]["centre_px"], serde_json::json!([48.0, 24.0]));
     assert_eq!(data["scene"]["disparities"], 64);
     assert!(WIDTH >= 40 && HEIGHT > 0 && !page.contains("/*S"), "styles and scripts are in their places");
 }

@@ -86,8 +86,10 @@ pub fn a_calibration_that_is_none_is_named(page: &mut LivePage, scene: &Path) ->
     page.press("scene")?;
     page.browser.value("new Promise((done) => setTimeout(done, 500))")?;
     told(page, "")?;
-    let depth = page.browser.value("state.hasDepth && state.planes.depth.some((mm) => mm > 0)")?;
-    hold(depth == true, || "the scene has no depths".to_owned())
+    let depth = page.browser.value(
+        "state.hasDepth && state.rig.centre_px.length === 2 && state.planes.depth.some((mm) => mm > 0)",
+    )?;
+    hold(depth == true, || "the scene has no depths, or its cameras no axis".to_owned())
 }
 
 /// Whether the page says this of a calibration that the pair is matched without.

@@ -1,15 +1,27 @@
 //! The report of images that are larger than its pictures.
 
-use super::page::{failed, hold, url_of};
+use super::page::{LivePage, failed, hold, url_of};
 use super::report::{opened, pixels_are_those_of_the_files};
 use crate::steps::{Outcome, output_of};
 use image::imageops::{FilterType, resize};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
+use stereopsis_host::pfm;
 
 /// Columns and rows: those of the page's pictures are fewer by shares that differ.
 const SIZE: (u32, u32) = (1344, 391);
+/// Focal length, px, and the axis, which is not in the middle of the images.
+const FOCAL_PX: f32 = 650.0;
+const AXIS: [f32; 2] = [600.0, 150.0];
+const CAMERAS: &str = "cam0=[650 0 600; 0 650 150; 0 0 1]
+cam1=[650 0 610; 0 650 150; 0 0 1]
+doffs=10
+baseline=80
+width=1344
+height=391
+ndisp=128
+";
 
 /// Matches a scene's pair, made wider, and holds the report to the files beside it.
 pub fn it_answers_as_the_files_do(stereo: &Path, scene: &Path) -> Outcome {
@@ -23,12 +35,43 @@ pub fn it_answers_as_the_files_do(stereo: &Path, scene: &Path) -> Outcome {
         resize(&picture, SIZE.0, SIZE.1, FilterType::Triangle).save(&to).map_err(|e| failed(&to, &e))?;
         run.arg(format!("--{side}")).arg(to);
     }
-    output_of(run.args(["--focal-px", "650", "--baseline-mm", "80", "--out"]).arg(&folder))?;
+    let calibration = folder.join("calib.txt");
+    fs::write(&calibration, CAMERAS).map_err(|e| failed(&calibration, &e))?;
+    output_of(run.arg("--calib").arg(&calibration).arg("--out").arg(&folder))?;
 
     let mut page = opened(&url_of(&folder.join("report.html")))?;
     let width = page.browser.value("state.planes.width")?;
     hold(width.as_u64() < Some(SIZE.0.into()), || format!("the page's picture has {width} columns"))?;
     pixels_are_those_of_the_files(&mut page, &folder)?;
+    points_are_those_of_the_cameras(&mut page, &folder)?;
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught: {thrown:?}"))
+}
+
+/// The points reach as far to the left and right, up, down and away as those of the files' depths do.
+fn points_are_those_of_the_cameras(page: &mut LivePage, run: &Path) -> Outcome {
+    page.press("view-points")?;
+    let found = page.browser.value(
+        "[0, 1, 2].map((axis) => { const all = cloud.points.places.filter((_, i) => i % 3 === axis); \
+         return [all.reduce((a, b) => Math.min(a, b)), all.reduce((a, b) => Math.max(a, b))]; })",
+    )?;
+    let path = run.join("depth.pfm");
+    let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
+    let depth = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
+    let mut due = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
+    for (i, &z) in depth.values.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+        let across = [i % depth.width, i / depth.width].map(|at| at as f32);
+        let [x, y] = [0, 1].map(|axis| (across[axis] - AXIS[axis]) * z / FOCAL_PX);
+        // Up and back, as the page has them.
+        for ([least, most], value) in due.iter_mut().zip([x, -y, -z]) {
+            (*least, *most) = (least.min(value), most.max(value));
+        }
+    }
+    // A pixel that the page leaves out may be the outermost one.
+    let is_near = |axis: usize, end: usize| {
+        let length = due[axis][1] - due[axis][0];
+        found[axis][end].as_f64().is_some_and(|n| (n as f32 - due[axis][end]).abs() < 0.02 * length)
+    };
+    let holds = (0..3).all(|axis| is_near(axis, 0) && is_near(axis, 1));
+    hold(holds, || format!("points reach to {found}, those of {} to {due:?}", path.display()))
 }

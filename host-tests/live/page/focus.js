@@ -63,9 +63,10 @@ PAINT.depth = (words, { planes }) => {
 };
 
 // What is known of a pixel, in one line.
-function describeFocus({ planes, ratio }, x, y) {
+function describeFocus(state, x, y) {
+  const planes = state.whole;
   const pixel = y * planes.width + x;
-  const place = placeWords(ratio, x, y);
+  const place = placeWords(state, x, y);
   if (planes.disparity[pixel] === NO_ANSWER) return `${place}no answer`;
   const depth = planes.depth[pixel] > 0 ? `; depth ${metresOf(planes.depth[pixel])}` : "";
   const frame = (planes.disparity[pixel] / DATA.frame_steps).toFixed(2);
@@ -91,7 +92,7 @@ function addSliders() {
 async function begin() {
   stack = await decodeStack();
   const { picture, planes } = stack;
-  Object.assign(state, { pair: { left: picture }, rig: { focal_px: DATA.focal_px },
+  Object.assign(state, { pair: { left: picture }, whole: planes, rig: { focal_px: DATA.focal_px },
     hasDepth: DATA.focal_px !== null, ratio: ratioTo(planes), describe: describeFocus });
   addViews(["all in focus", "sharpest frame", "confidence", ...(DATA.depths ? ["depth"] : []),
     ...(state.hasDepth ? ["points"] : [])], "sharpest frame");

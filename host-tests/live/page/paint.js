@@ -64,9 +64,7 @@ function paintNumbers(words, numbers, none, isNear) {
 
 // The first reason without an answer, or that it was filled in, as a place in the flags' list; -1 for a pixel
 // with an answer of its own.
-function reason(planes, pixel) {
-  const answered = planes.disparity[pixel] !== NO_ANSWER;
-  const flags = planes.flags[pixel];
+function reason(answered, flags) {
   return DATA.flags.findIndex(({ bit, name }) => (flags & bit) !== 0 && (!answered || name === "filled"));
 }
 
@@ -93,11 +91,13 @@ const PAINT = {
     const metres = (mm) => `${(mm / 1000).toFixed(2)} m`;
     return found ? rampLegend(found.reverse().map(metres)) : ["No pixel has a depth up to 65 m."];
   },
-  flags: (words, { planes }) => {
+  // Of the whole result: a pixel that is kept back has its answer, and no reason for having none.
+  flags: (words, { planes, whole }) => {
+    const { disparity, flags, left } = whole ?? planes;
     const colours = DATA.flags.map(({ colour }) => packed(colour));
     for (let i = 0; i < words.length; i += 1) {
-      const place = reason(planes, i);
-      const pale = planes.disparity[i] === NO_ANSWER ? BLACK : greyWord(160 + (planes.left[i] >> 2));
+      const place = reason(disparity[i] !== NO_ANSWER, flags[i]);
+      const pale = disparity[i] === NO_ANSWER ? BLACK : greyWord(160 + (left[i] >> 2));
       words[i] = place < 0 ? pale : colours[place];
     }
     return ["Pale: an answer. ", ...DATA.flags.map(({ name, colour }) => swatch(colour, name))];
@@ -114,7 +114,7 @@ const PAINT = {
 function rampLegend([dark, bright]) {
   const stops = RAMP.filter((_, step) => step % 51 === 0).map(css).join(", ");
   const ramp = make("span", { class: "ramp", style: `background: linear-gradient(to right, ${stops})` });
-  return [dark, ramp, `${bright}; black: no answer`];
+  return [dark, ramp, `${bright}; black: no answer${state.whole ? " that is shown" : ""}`];
 }
 
 // A colour and what it means.
@@ -132,19 +132,23 @@ const ratioTo = ({ width, height }) => [DATA.columns / width, DATA.rows / height
 // bits in which that was done.
 const takenFrom = (at, ratio) => Math.floor(Math.fround((at + 0.5) * Math.fround(ratio)));
 
-// Where a pixel of the page's picture is in the pair.
-function placeWords(ratio, x, y) {
+// Where a pixel of the page's picture is in the pair, and whether its answer is kept back.
+function placeWords({ planes, whole, ratio }, x, y) {
   const [column, row] = [x, y].map((at, axis) => takenFrom(at, ratio[axis]));
-  return `column ${column}, row ${row}: `;
+  const pixel = y * planes.width + x;
+  const isHidden = whole && whole.disparity[pixel] !== planes.disparity[pixel];
+  return `column ${column}, row ${row}${isHidden ? ", hidden by the sliders" : ""}: `;
 }
 
 // What is known of a pixel, in one line.
-function describePixel({ planes, hasDepth, rig, ratio }, x, y) {
+function describePixel(state, x, y) {
+  const { hasDepth, rig } = state;
+  const planes = state.whole ?? state.planes;
   const pixel = y * planes.width + x;
   const raw = planes.disparity[pixel];
   const flags = DATA.flags.filter(({ bit }) => (planes.flags[pixel] & bit) !== 0).map(({ name }) => name);
   const why = flags.length > 0 ? flags.join(", ") : "none";
-  const place = placeWords(ratio, x, y);
+  const place = placeWords(state, x, y);
   if (raw === NO_ANSWER) return `${place}no answer; flags: ${why}`;
   const sigmaPx = planes.sigma[pixel];
   let text = `${place}disparity ${(raw / 32).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;

@@ -106,7 +106,7 @@ function addSliders() {
 async function begin() {
   whole = await decodeRun();
   const { pair, planes, truth } = whole;
-  Object.assign(state, { pair, rig: DATA.rig ?? {}, hasDepth: DATA.rig !== null,
+  Object.assign(state, { pair, whole: planes, rig: DATA.rig ?? {}, hasDepth: DATA.rig !== null,
     ratio: ratioTo(planes) });
   addViews([...VIEWS.filter((name) => state.hasDepth || !["depth", "points"].includes(name)),
     ...(truth ? ["truth", "error"] : [])]);

@@ -1,7 +1,9 @@
 // The picture of a page: one of the views of a result, its cursor, and the hands and keys that move them.
 
-// What is shown. A pixel of it stands for `ratio` pixels of a row of the pair, and for so many of a column.
-const state = { pair: null, planes: null, rig: {}, hasDepth: false, ratio: [1, 1], describe: describePixel };
+// What is shown, and the whole result where sliders keep back a part of it. A pixel stands for `ratio` pixels
+// of a row of the pair, and for so many of a column.
+const state = { pair: null, planes: null, whole: null, rig: {}, hasDepth: false, ratio: [1, 1],
+  describe: describePixel };
 const canvas = byId("picture");
 const cloud = new Cloud(canvas);
 const context = canvas.getContext("2d");

@@ -128,9 +128,27 @@ fn sliders_change_what_is_said(page: &mut LivePage, run: &Path) -> Outcome {
         hold(share(&fewer) < share(&all) && other != label, || {
             format!("the slider {name}: '{fewer}' of '{all}', and it says '{other}'")
         })?;
+        what_is_hidden_is_no_pixel_without_an_answer(page)?;
         page.set(name, start)?;
         let again = page.text("figures")?;
         hold(again == all, || Failure::new(format!("{name}: '{again}'")).to_string())?;
     }
     Ok(())
+}
+
+/// Of answers that the sliders keep back the page says that, and what they are, and paints their flags.
+fn what_is_hidden_is_no_pixel_without_an_answer(page: &mut LivePage) -> Outcome {
+    page.press("view-flags")?;
+    let found = page.browser.value(
+        "(() => { const { width, disparity: all } = whole.planes; \
+         const words = new Uint32Array(image.data.buffer); \
+         const hidden = [...all.keys()].filter((i) => all[i] !== state.planes.disparity[i]); \
+         const at = (i) => describePixel(state, i % width, Math.floor(i / width)); \
+         return { count: hidden.length, black: hidden.filter((i) => words[i] === BLACK).length, \
+         wrong: hidden.filter((_, i) => i % 97 === 0).map(at).filter((said) => \
+         !/, hidden by the sliders: disparity [0-9.]+ px, sigma/.test(said)) }; })()",
+    )?;
+    let is_right = found["count"].as_u64() > Some(0) && found["black"] == 0 && found["wrong"] == json!([]);
+    hold(is_right, || format!("of what the sliders keep back: {found}"))?;
+    page.press("view-disparity")
 }

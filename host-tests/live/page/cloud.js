@@ -46,27 +46,36 @@ class Cloud {
 
   // Takes the points of a result, once: where each pixel with a depth lies, m, and its colour. The nearest
   // and the farthest ones do not move the centre.
-  take({ planes, pair, rig, hasDepth, ratio }) {
+  take(state) {
     if (this.isTaken) return;
-    this.isTaken = true;
+    [this.isTaken, this.beyond] = [true, 0];
+    const { planes, pair, rig, hasDepth, ratio } = state;
     if (!hasDepth) return;
-    const { width, height, depth, stepMetres = 0.001 } = planes;
+    const { width, height } = planes;
     const step = Math.max(1, Math.ceil(Math.sqrt((width * height) / MOST_POINTS)));
     const colours = new Uint32Array(pair.left.pixels.buffer, pair.left.pixels.byteOffset, width * height);
-    const found = [];
+    const [found, depths] = [[], []];
     for (let y = 0; y < height; y += step) {
       for (let x = 0; x < width; x += step) {
-        if (depth[y * width + x] > 0) found.push(y * width + x);
+        const pixel = y * width + x;
+        if (planes.disparity[pixel] === NO_ANSWER) continue;
+        const metres = state.depthAt(state, pixel);
+        if (1000 * metres > FARTHEST_MM) {
+          this.beyond += 1;
+        } else if (metres > 0) {
+          found.push(pixel);
+          depths.push(metres);
+        }
       }
     }
     if (found.length === 0) return;
-    const sorted = Uint16Array.from(found, (pixel) => depth[pixel]).sort();
+    const sorted = Float32Array.from(depths).sort();
     const ends = [0.02, 0.98].map((share) => sorted[Math.floor(share * (sorted.length - 1))]);
     const places = new Float32Array(3 * found.length);
     // Where nothing says where the axis is, it is in the middle.
     const [cx, cy] = rig.centre_px ?? [width, height].map((length, axis) => (length * ratio[axis] - 1) / 2);
     found.forEach((pixel, i) => {
-      const z = depth[pixel] * stepMetres;
+      const z = depths[i];
       const column = takenFrom(pixel % width, ratio[0]);
       const row = takenFrom(Math.floor(pixel / width), ratio[1]);
       // The library looks along -Z, and its Y is up.
@@ -74,7 +83,7 @@ class Cloud {
     });
     this.points = { places, colours: Uint32Array.from(found, (pixel) => colours[pixel]), step,
       focal: rig.focal_px / ratio[1] };
-    this.centre = ((ends[0] + ends[1]) / 2) * stepMetres;
+    this.centre = (ends[0] + ends[1]) / 2;
   }
 
   // The library's objects, made when they are needed first; nothing where the browser has no WebGL.

@@ -13,7 +13,7 @@ async function decodeStack() {
   const [picture, answers, depths] = await Promise.all(urls.map(([name, url]) => decoded(name, url)));
   const { width, height } = answers;
   const planes = { width, height, disparity: numbersOf(answers), confidence: bytesOf(answers),
-    depth: depths ? numbersOf(depths) : new Uint16Array(width * height), stepMetres: DATA.depth_step_m };
+    depth: depths ? numbersOf(depths) : new Uint16Array(width * height) };
   return { picture, planes };
 }
 
@@ -93,7 +93,8 @@ async function begin() {
   stack = await decodeStack();
   const { picture, planes } = stack;
   Object.assign(state, { pair: { left: picture }, whole: planes, rig: { focal_px: DATA.focal_px },
-    hasDepth: DATA.focal_px !== null, ratio: ratioTo(planes), describe: describeFocus });
+    hasDepth: DATA.focal_px !== null, ratio: ratioTo(planes), describe: describeFocus,
+    depthAt: ({ planes: { depth } }, pixel) => depth[pixel] * DATA.depth_step_m });
   addViews(["all in focus", "sharpest frame", "confidence", ...(DATA.depths ? ["depth"] : []),
     ...(state.hasDepth ? ["points"] : [])], "sharpest frame");
   fitPicture(planes.width, planes.height);

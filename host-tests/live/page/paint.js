@@ -1,6 +1,10 @@
 // The views of a result, painted pixel by pixel, and what their colours mean.
 
 const NO_ANSWER = 0xffff;
+// The steps of a disparity in a px.
+const STEPS_PX = 32;
+// What is farther has the colour of this, and is no point: few pixels would take the colours of all others.
+const FARTHEST_MM = 65535;
 const VIEWS = ["left", "right", "disparity", "depth", "flags", "confidence", "points"];
 
 // A colour in the order of a canvas's bytes, read as one little-endian word.
@@ -62,6 +66,20 @@ function paintNumbers(words, numbers, none, isNear) {
   return found;
 }
 
+// The depth of a disparity in steps, m: Z = f b / (d + doffs), infinite at infinity and behind.
+function depthOf(steps, { focal_px: focal, baseline_mm: baseline, offset_px: offset }) {
+  const shift = steps / STEPS_PX + offset;
+  return shift > 0 ? (focal * baseline) / shift / 1000 : Infinity;
+}
+
+// The depth in whole mm whose colour a depth has; 0 is none.
+const paintedMm = (metres) => Math.min(Math.max(Math.round(1000 * metres), 1), FARTHEST_MM);
+
+// A length with so many digits of a mm, beyond 100 m in metres.
+function lengthWords(mm, digits) {
+  return mm < 1e5 ? `${mm.toFixed(digits)} mm` : `${(mm / 1000).toFixed(mm < 1e6 ? 1 : 0)} m`;
+}
+
 // The first reason without an answer, or that it was filled in, as a place in the flags' list; -1 for a pixel
 // with an answer of its own.
 function reason(answered, flags) {
@@ -80,16 +98,19 @@ const PAINT = {
   disparity: (words, { planes }) => {
     const found = paintNumbers(words, planes.disparity, NO_ANSWER, true);
     if (!found) return ["No pixel has an answer."];
-    return rampLegend(found.map((raw) => `${(raw / 32).toFixed(1)} px`));
+    return rampLegend(found.map((raw) => `${(raw / STEPS_PX).toFixed(1)} px`));
   },
-  depth: (words, { planes, hasDepth }) => {
+  depth: (words, { planes, hasDepth, rig }) => {
     if (!hasDepth) {
       words.fill(BLACK);
       return ["No depth: give focal length and baseline under Cameras."];
     }
-    const found = paintNumbers(words, planes.depth, 0, false);
-    const metres = (mm) => `${(mm / 1000).toFixed(2)} m`;
-    return found ? rampLegend(found.reverse().map(metres)) : ["No pixel has a depth up to 65 m."];
+    // A disparity has one depth, so that there are fewer of them than of pixels.
+    const depths = Uint16Array.from({ length: NO_ANSWER }, (_, steps) => paintedMm(depthOf(steps, rig)));
+    const found = paintNumbers(words, planes.disparity.map((steps) => depths[steps] ?? 0), 0, false);
+    if (!found) return ["No answer that is shown has a distance."];
+    const [near, far] = found.map((mm) => `${(mm / 1000).toFixed(2)} m`);
+    return rampLegend([counts[FARTHEST_MM] > 0 ? `${far} and beyond` : far, near]);
   },
   // Of the whole result: a pixel that is kept back has its answer, and no reason for having none.
   flags: (words, { planes, whole }) => {
@@ -151,11 +172,13 @@ function describePixel(state, x, y) {
   const place = placeWords(state, x, y);
   if (raw === NO_ANSWER) return `${place}no answer; flags: ${why}`;
   const sigmaPx = planes.sigma[pixel];
-  let text = `${place}disparity ${(raw / 32).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;
-  if (hasDepth && planes.depth[pixel] > 0) {
-    const mm = planes.depth[pixel];
+  let text = `${place}disparity ${(raw / STEPS_PX).toFixed(3)} px, sigma ${sigmaPx.toFixed(2)} px`;
+  const mm = hasDepth ? 1000 * depthOf(raw, rig) : 0;
+  if (mm === Infinity) {
+    text += "; at infinity";
+  } else if (mm > 0) {
     const sigmaMm = ((mm * mm) / (rig.focal_px * rig.baseline_mm)) * sigmaPx;
-    text += `; depth ${mm} mm, sigma ${sigmaMm.toFixed(sigmaMm < 10 ? 1 : 0)} mm`;
+    text += `; depth ${lengthWords(mm, 0)}, sigma ${lengthWords(sigmaMm, sigmaMm < 10 ? 1 : 0)}`;
   }
   // An answer's is never 0: then it was not asked for.
   const sure = planes.confidence[pixel];

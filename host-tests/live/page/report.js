@@ -1,8 +1,6 @@
 // The report's own script: a run's data in the views, as far as its sliders let them through.
 
 const MOST_ERROR_PX = 3;
-const STEPS_PX = 32;
-const MOST_MM = 65535;
 const BAD_STEPS = 2 * STEPS_PX;
 
 // The numbers of the run.
@@ -16,22 +14,14 @@ async function decodeRun() {
     confidence: bytesOf(answers), flags: bytesOf(notes),
     sigma: Float32Array.from(numbersOf(notes), (n) => n / 1024) };
   toGrey(left, planes.left);
-  planes.depth = planes.disparity.map(depthMm);
   return { pair: { left, right }, planes, truth: truth ? numbersOf(truth) : null };
-}
-
-// Z = f b / (d + doffs), mm; 0 for none.
-function depthMm(steps) {
-  if (!DATA.rig || steps === NO_ANSWER) return 0;
-  const { focal_px: focal, baseline_mm: baseline, offset_px: offset } = DATA.rig;
-  const mm = Math.round((focal * baseline) / (steps / STEPS_PX + offset));
-  return mm > 0 && mm <= MOST_MM ? mm : 0;
 }
 
 function distance(steps) {
   const px = `${(steps / STEPS_PX).toFixed(1)} px`;
-  const mm = depthMm(steps);
-  return mm > 0 ? `${(mm / 1000).toFixed(2)} m (${px})` : px;
+  if (!DATA.rig) return px;
+  const metres = depthOf(steps, DATA.rig);
+  return `${metres === Infinity ? "infinity" : `${metres.toFixed(metres < 100 ? 2 : 0)} m`} (${px})`;
 }
 
 const offAtZero = (value) => (value === 0 ? "off" : String(value));
@@ -46,11 +36,10 @@ const SLIDERS = [
 // Leaves out what the sliders keep back, and says what is left.
 function sift() {
   const [least, near, far] = SLIDERS.map(valueOf);
-  const { disparity, depth, confidence } = whole.planes;
+  const { disparity, confidence } = whole.planes;
   const isShown = (d, i) => d !== NO_ANSWER && confidence[i] >= least && d <= near && d >= far;
   state.planes = { ...whole.planes,
     disparity: disparity.map((d, i) => (isShown(d, i) ? d : NO_ANSWER)),
-    depth: depth.map((mm, i) => (isShown(disparity[i], i) ? mm : 0)),
     confidence: confidence.map((c, i) => (isShown(disparity[i], i) ? c : 0)) };
   cloud.forget();
   let [shown, judged, bad] = [0, 0, 0];

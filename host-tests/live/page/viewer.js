@@ -3,7 +3,7 @@
 // What is shown, and the whole result where sliders keep back a part of it. A pixel stands for `ratio` pixels
 // of a row of the pair, and for so many of a column.
 const state = { pair: null, planes: null, whole: null, rig: {}, hasDepth: false, ratio: [1, 1],
-  describe: describePixel };
+  describe: describePixel, depthAt: ({ planes, rig }, i) => depthOf(planes.disparity[i], rig) };
 const canvas = byId("picture");
 const cloud = new Cloud(canvas);
 const context = canvas.getContext("2d");
@@ -57,7 +57,9 @@ function show() {
 function cloudWords(count) {
   if (count === null) return "This browser has no WebGL, which the view of points takes.";
   if (count === 0) return "No points: give focal length and baseline under Cameras.";
-  return `${count} points; drag to turn, with the right button to move, turn the wheel to come nearer.`;
+  const beyond = cloud.beyond > 0 ? `, without ${cloud.beyond} beyond ${FARTHEST_MM / 1000} m` : "";
+  return `${count} points${beyond}; drag to turn, with the right button to move, turn the wheel to come `
+    + "nearer.";
 }
 
 // The pixel under the pointer.

@@ -1,6 +1,6 @@
 //! The report of a focus stack in a browser: what it says is what the files of the run say.
 
-use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use super::page::{COLOURS, LivePage, failed, hold, numbers, url_of};
 use super::report::opened;
 use crate::steps::{Outcome, output_of};
 use image::{GrayImage, Luma, imageops};
@@ -8,7 +8,6 @@ use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use stereopsis_host::pfm;
 
 /// Columns and rows of the frames, and how many there are.
 const SIZE: (u32, u32) = (120, 80);
@@ -67,12 +66,9 @@ pub fn it_answers_as_the_files_do(stereo: &Path, folder: &Path) -> Outcome {
 
 /// The frame, the confidence and the depth of pixels all over the picture, to the digits that are said.
 fn pixels_are_those_of_the_files(page: &mut LivePage, out: &Path) -> Outcome {
-    let map = |name: &str| {
-        let path = out.join(name);
-        let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
-        pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))
-    };
-    let [index, confidence, depth] = [map("index.pfm")?, map("confidence.pfm")?, map("depth.pfm")?];
+    let [index, confidence, depth] =
+        ["index.pfm", "confidence.pfm", "depth.pfm"].map(|name| numbers(&out.join(name)));
+    let (index, confidence, depth) = (index?, confidence?, depth?);
     let places: Vec<_> = (0..index.values.len()).step_by(67).collect();
     let asked: Vec<_> = places.iter().map(|at| [at % index.width, at / index.width]).collect();
     let said =

@@ -5,7 +5,9 @@ use crate::steps::{Failure, Outcome};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
+use std::fs;
 use std::path::{Path, PathBuf};
+use stereopsis_host::pfm::{self, FloatMap};
 
 /// Waits until what was moved is matched: it happens before the picture after the next one.
 const SETTLED: &str = "new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)))";
@@ -168,6 +170,12 @@ impl LivePage {
 /// A file's address.
 pub fn url_of(path: &Path) -> String {
     format!("file://{}", path.display())
+}
+
+/// The numbers of a file.
+pub fn numbers(path: &Path) -> Outcome<FloatMap> {
+    let bytes = fs::read(path).map_err(|e| failed(path, &e))?;
+    pfm::read(&mut bytes.as_slice()).map_err(|e| failed(path, &e))
 }
 
 /// Fails with a line unless it holds.

@@ -1,11 +1,9 @@
 //! The live page beside the program `stereo`: the same command, the same bits.
 
-use super::page::{LivePage, failed};
+use super::page::{LivePage, failed, numbers};
 use crate::steps::{Failure, Outcome, output_of};
-use std::fs;
 use std::path::Path;
 use std::process::Command;
-use stereopsis_host::pfm;
 
 /// Runs the command line that the page says in the folder of its files, and compares: disparities, flags and
 /// confidences, and depths where there are some, are equal to the bit.
@@ -17,9 +15,7 @@ pub fn as_the_program(page: &mut LivePage, stereo: &Path, folder: &Path) -> Outc
     let out = folder.join("depth");
     let differs = |what: &str| Failure::new(format!("{what} of the page differ from those of {command}"));
 
-    let path = out.join("disparity.pfm");
-    let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
-    let map = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
+    let map = numbers(&out.join("disparity.pfm"))?;
     let found = page.plane("disparity")?;
     let found = found.as_chunks().0.iter().map(|raw| match u16::from_le_bytes(*raw) {
         u16::MAX => f32::INFINITY,

@@ -1,13 +1,12 @@
 //! The report of a run in a browser: what it says is what the files of the run say.
 
 use super::browser::Browser;
-use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use super::page::{COLOURS, LivePage, failed, hold, numbers, url_of};
 use crate::steps::{Failure, Outcome};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
 use stereopsis::units::PixelFlags;
-use stereopsis_host::pfm;
 
 /// What can be used: ten views, of which two need a truth, two of which need depths; three sliders; the
 /// picture.
@@ -59,14 +58,11 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
 /// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have fewer
 /// of them than the files.
 pub fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
-    let path = run.join("disparity.pfm");
-    let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
-    let map = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
+    let (map, depth) = (numbers(&run.join("disparity.pfm"))?, numbers(&run.join("depth.pfm"))?);
     let open = |name: &str| {
         let path = run.join(name);
         image::open(&path).map_err(|e| failed(&path, &e))
     };
-    let depth = open("depth.png")?.into_luma16().into_raw();
     let (flags, confidence) = (open("flags.png")?.into_luma8(), open("confidence.png")?.into_luma8());
     let (flags, confidence) = (flags.into_raw(), confidence.into_raw());
     let size = page.browser.value("[state.planes.width, state.planes.height]")?;
@@ -93,7 +89,7 @@ pub fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome
             // Half a digit is rounded up.
             parts.push(format!("disparity {:.3} px, sigma ", map.values[at] + 1e-5));
             parts.push(format!("; confidence {} of ", confidence[at]));
-            parts.push(format!("; depth {} mm, sigma ", depth[at]));
+            depth_is_told(said, depth.values[at])?;
         } else {
             parts.push("no answer".into());
             without += 1;
@@ -104,6 +100,18 @@ pub fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome
     }
     println!("the report says of {PIXELS} pixels what the files say");
     hold(without > 0 && without < PIXELS, || format!("{without} of {PIXELS} pixels have no answer"))
+}
+
+/// Whether a depth in metres is said to its digits, or that it is infinite.
+fn depth_is_told(said: &str, metres: f32) -> Outcome {
+    let words = said.split_once("; depth ").map(|(_, words)| words.split([' ', ',']));
+    let told = words.and_then(|mut words| words.next()?.parse::<f32>().ok().zip(words.next()));
+    let is_told = match told {
+        None => metres.is_infinite() && said.contains("; at infinity; "),
+        Some((mm, "mm")) => (mm - 1000.0 * metres).abs() < 0.51,
+        Some((far, _)) => metres > 99.9 && (far - metres).abs() < 1e-3 * metres,
+    };
+    hold(is_told, || format!("the report says '{said}', the depth is {metres} m"))
 }
 
 /// At first the share of the answers is that of summary.json; each slider takes answers away and gives them

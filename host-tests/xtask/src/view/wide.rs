@@ -1,27 +1,29 @@
 //! The report of images that are larger than its pictures.
 
-use super::page::{LivePage, failed, hold, url_of};
+use super::page::{LivePage, failed, hold, numbers, url_of};
 use super::report::{opened, pixels_are_those_of_the_files};
 use crate::steps::{Outcome, output_of};
 use image::imageops::{FilterType, resize};
 use std::fs;
 use std::path::Path;
 use std::process::Command;
-use stereopsis_host::pfm;
 
 /// Columns and rows: those of the page's pictures are fewer by shares that differ.
 const SIZE: (u32, u32) = (1344, 391);
-/// Focal length, px, and the axis, which is not in the middle of the images.
+/// Focal length, px, and the axis, which is not in the middle of the images; the cameras look apart, so that
+/// what is far is behind infinity.
 const FOCAL_PX: f32 = 650.0;
 const AXIS: [f32; 2] = [600.0, 150.0];
 const CAMERAS: &str = "cam0=[650 0 600; 0 650 150; 0 0 1]
-cam1=[650 0 610; 0 650 150; 0 0 1]
-doffs=10
-baseline=80
+cam1=[650 0 580; 0 650 150; 0 0 1]
+doffs=-20
+baseline=2000
 width=1344
 height=391
 ndisp=128
 ";
+/// Up to this depth the page shows points and has colours, m.
+const FARTHEST_M: f32 = 65.535;
 
 /// Matches a scene's pair, made wider, and holds the report to the files beside it.
 pub fn it_answers_as_the_files_do(stereo: &Path, scene: &Path) -> Outcome {
@@ -43,9 +45,23 @@ pub fn it_answers_as_the_files_do(stereo: &Path, scene: &Path) -> Outcome {
     let width = page.browser.value("state.planes.width")?;
     hold(width.as_u64() < Some(SIZE.0.into()), || format!("the page's picture has {width} columns"))?;
     pixels_are_those_of_the_files(&mut page, &folder)?;
+    what_is_far_has_a_colour_and_a_distance(&mut page)?;
     points_are_those_of_the_cameras(&mut page, &folder)?;
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught: {thrown:?}"))
+}
+
+/// Beyond all colours answers have the last one, of which the legend says that, and at infinity the slider says
+/// that.
+fn what_is_far_has_a_colour_and_a_distance(page: &mut LivePage) -> Outcome {
+    page.press("view-depth")?;
+    let black = page.browser.value(
+        "(() => { const words = new Uint32Array(image.data.buffer); return [...state.planes.disparity.keys()]\
+         .filter((i) => state.planes.disparity[i] !== NO_ANSWER && words[i] === BLACK).length; })()",
+    )?;
+    let (legend, far) = (page.text("legend")?, page.text("far-says")?);
+    let is_said = legend.contains(" m and beyond") && far.starts_with("infinity (");
+    hold(black == 0 && is_said, || format!("{black} answers are black; '{legend}', '{far}'"))
 }
 
 /// The points reach as far to the left and right, up, down and away as those of the files' depths do.
@@ -56,10 +72,9 @@ fn points_are_those_of_the_cameras(page: &mut LivePage, run: &Path) -> Outcome {
          return [all.reduce((a, b) => Math.min(a, b)), all.reduce((a, b) => Math.max(a, b))]; })",
     )?;
     let path = run.join("depth.pfm");
-    let bytes = fs::read(&path).map_err(|e| failed(&path, &e))?;
-    let depth = pfm::read(&mut bytes.as_slice()).map_err(|e| failed(&path, &e))?;
+    let depth = numbers(&path)?;
     let mut due = [[f32::INFINITY, f32::NEG_INFINITY]; 3];
-    for (i, &z) in depth.values.iter().enumerate().filter(|(_, z)| z.is_finite()) {
+    for (i, &z) in depth.values.iter().enumerate().filter(|&(_, &z)| z <= FARTHEST_M) {
         let across = [i % depth.width, i / depth.width].map(|at| at as f32);
         let [x, y] = [0, 1].map(|axis| (across[axis] - AXIS[axis]) * z / FOCAL_PX);
         // Up and back, as the page has them.

@@ -112,7 +112,10 @@ function keyInPicture(key, isFar) {
 }
 
 function listenToPicture() {
-  canvas.addEventListener("pointermove", (event) => view() !== "points" && moveTo(event));
+  // A finger that taps does not move.
+  for (const kind of ["pointermove", "pointerdown"]) {
+    canvas.addEventListener(kind, (event) => view() !== "points" && moveTo(event));
+  }
   // The library turns the points; it is drawn once for all that happens before the next picture.
   const seen = ({ type, buttons }) => {
     if (view() !== "points" || isDrawing || (type === "mousemove" && buttons === 0)) return;

@@ -47,12 +47,38 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     page.key("ArrowDown")?;
     let said = page.text("pixel")?;
     hold(said.starts_with("column 300, row 201: "), || format!("the keys lead to '{said}'"))?;
+    a_tap_tells_its_pixel(&mut page)?;
     page.keys_reach_everything(CONTROLS)?;
     let requests = page.requests();
     hold(requests == [url.as_str()], || format!("the report asks for {requests:?}"))?;
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught in the report: {thrown:?}"))?;
     Ok(())
+}
+
+/// A finger that taps the picture's middle is told what is there.
+fn a_tap_tells_its_pixel(page: &mut LivePage) -> Outcome {
+    page.browser.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": true }))?;
+    let middle = page.browser.value(
+        "(() => { byId('picture').scrollIntoView({ block: 'center' }); \
+         const box = canvas.getBoundingClientRect(); \
+         return [box.left + box.width / 2, box.top + box.height / 2]; })()",
+    )?;
+    for (kind, points) in
+        [("touchStart", json!([{ "x": middle[0], "y": middle[1] }])), ("touchEnd", json!([]))]
+    {
+        page.browser.call("Input.dispatchTouchEvent", json!({ "type": kind, "touchPoints": points }))?;
+    }
+    let said = page.text("pixel")?;
+    page.browser.call("Emulation.setTouchEmulationEnabled", json!({ "enabled": false }))?;
+    // A pixel of the screen may be more than one of the picture.
+    let is_near = |word: &str, due: f64| {
+        let number = said.split_once(word).and_then(|(_, rest)| rest.split([',', ':']).next()?.parse().ok());
+        number.is_some_and(|number: f64| (number - due).abs() <= 2.0)
+    };
+    hold(is_near("column ", 320.0) && is_near("row ", 240.0), || {
+        format!("a tap in the middle leads to '{said}'")
+    })
 }
 
 /// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have fewer

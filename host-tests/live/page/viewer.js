@@ -46,11 +46,31 @@ function show() {
     legend = [cloudWords(cloud.draw(context))];
   } else {
     legend = PAINT[view()](new Uint32Array(image.data.buffer), state);
-    context.putImageData(image, 0, 0);
+    putPicture();
   }
   cloud.isOn = isCloud;
   byId("legend").replaceChildren(...legend);
   canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
+}
+
+// The picture as it was painted last, and on it the cursor while keys move it.
+function putPicture() {
+  context.putImageData(image, 0, 0);
+  if (document.activeElement !== canvas) return;
+  // As large on the screen whatever the picture's size, but no thinner than a pixel of it.
+  const unit = Math.max(canvas.width / canvas.clientWidth, 1);
+  const [x, y] = [cursor.x + 0.5, cursor.y + 0.5];
+  context.beginPath();
+  // The pixel itself stays free.
+  for (const [across, down] of [[1, 0], [-1, 0], [0, 1], [0, -1]]) {
+    context.moveTo(x + 3 * unit * across, y + 3 * unit * down);
+    context.lineTo(x + 12 * unit * across, y + 12 * unit * down);
+  }
+  // White on black is seen on every colour.
+  for (const [colour, width] of [["black", 3], ["white", 1]]) {
+    [context.strokeStyle, context.lineWidth] = [colour, width * unit];
+    context.stroke();
+  }
 }
 
 // What is said below so many points.
@@ -68,7 +88,7 @@ function moveTo(event) {
   const inside = (value, most) => Math.min(Math.max(Math.floor(value), 0), most - 1);
   cursor.x = inside(((event.clientX - box.left) / box.width) * canvas.width, canvas.width);
   cursor.y = inside(((event.clientY - box.top) / box.height) * canvas.height, canvas.height);
-  tellPixel();
+  seeCursor();
 }
 
 // Whether somebody looks at a pixel now.
@@ -77,6 +97,16 @@ const isWatched = () => canvas.matches(":hover, :focus");
 function tellPixel() {
   isPointed = true;
   if (state.planes) byId("pixel").textContent = state.describe(state, cursor.x, cursor.y);
+}
+
+function drawCursor() {
+  if (image && view() !== "points") putPicture();
+}
+
+// The cursor was moved.
+function seeCursor() {
+  drawCursor();
+  tellPixel();
 }
 
 // Turns on and on, until it is stopped.
@@ -107,7 +137,7 @@ function keyInPicture(key, isFar) {
   const [x, y] = moves[key].map((step) => (isFar ? 10 : 1) * step);
   cursor.x = Math.min(Math.max(cursor.x + x, 0), canvas.width - 1);
   cursor.y = Math.min(Math.max(cursor.y + y, 0), canvas.height - 1);
-  tellPixel();
+  seeCursor();
   return true;
 }
 
@@ -128,6 +158,7 @@ function listenToPicture() {
   for (const kind of ["mousemove", "wheel", "touchmove"]) {
     (kind === "mousemove" ? window : canvas).addEventListener(kind, seen, { passive: true });
   }
+  for (const kind of ["focus", "blur"]) canvas.addEventListener(kind, drawCursor);
   canvas.addEventListener("keydown", (event) => {
     if (!state.planes || event.ctrlKey || event.altKey || event.metaKey) return;
     const isCloud = view() === "points";

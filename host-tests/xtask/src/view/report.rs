@@ -47,6 +47,7 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     page.key("ArrowDown")?;
     let said = page.text("pixel")?;
     hold(said.starts_with("column 300, row 201: "), || format!("the keys lead to '{said}'"))?;
+    the_cursor_is_seen(&mut page)?;
     a_tap_tells_its_pixel(&mut page)?;
     page.keys_reach_everything(CONTROLS)?;
     let requests = page.requests();
@@ -54,6 +55,31 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught in the report: {thrown:?}"))?;
     Ok(())
+}
+
+/// While keys move the cursor, the picture shows where it is, and not what it is on.
+fn the_cursor_is_seen(page: &mut LivePage) -> Outcome {
+    let differs = |page: &mut LivePage| {
+        page.browser.value(
+            "(() => { const { width, height } = canvas; \
+             const { data } = context.getImageData(0, 0, width, height); \
+             const found = new Uint32Array(data.buffer); const painted = new Uint32Array(image.data.buffer); \
+             const other = [...found.keys()].filter((i) => found[i] !== painted[i]); \
+             return [other.length, other.reduce((sum, i) => sum + (i % width), 0) / other.length, \
+             other.includes(cursor.y * width + cursor.x)]; })()",
+        )
+    };
+    page.browser.value("cursor.x = 300; cursor.y = 200; canvas.focus()")?;
+    for (key, column) in [("ArrowLeft", 299.0), ("ArrowRight", 300.0)] {
+        page.key(key)?;
+        let cross = differs(page)?;
+        let middle = cross[1].as_f64().unwrap_or(f64::NAN);
+        let is_there = cross[0].as_u64() > Some(8) && (middle - column).abs() < 0.5 && cross[2] == false;
+        hold(is_there, || format!("at column {column} the cursor is drawn as {cross}"))?;
+    }
+    page.browser.value("canvas.blur()")?;
+    let cross = differs(page)?;
+    hold(cross[0] == 0, || format!("without keys the cursor is drawn as {cross}"))
 }
 
 /// A finger that taps the picture's middle is told what is there.

@@ -49,7 +49,7 @@ PAINT["all in focus"] = (...given) => {
 };
 PAINT["sharpest frame"] = (words, { planes }) => {
   const found = paintNumbers(words, planes.disparity, NO_ANSWER, true);
-  return found ? rampLegend(found.map(frameWords)) : ["No pixel has an answer."];
+  return found ? rampLegend(found.map(frameWords)) : [NO_ANSWERS];
 };
 PAINT.confidence = (words, { planes }) => {
   for (let i = 0; i < words.length; i += 1) {
@@ -59,7 +59,7 @@ PAINT.confidence = (words, { planes }) => {
 };
 PAINT.depth = (words, { planes }) => {
   const found = paintNumbers(words, planes.depth, 0, false);
-  return found ? rampLegend(found.reverse().map(metresOf)) : ["No pixel has a depth."];
+  return found ? rampLegend(found.reverse().map(metresOf)) : [NO_DISTANCE];
 };
 
 // What is known of a pixel, in one line.

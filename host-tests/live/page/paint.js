@@ -91,24 +91,29 @@ function paintPicture(words, { pixels }) {
   words.set(new Uint32Array(pixels.buffer, pixels.byteOffset, words.length));
 }
 
+// What is said where there is nothing to paint: cameras are a part of the live page alone.
+const NO_CAMERAS = "No depth: give focal length and baseline under Cameras.";
+const NO_DISTANCE = "No answer that is shown has a distance.";
+const NO_ANSWERS = "No pixel has an answer that is shown.";
+
 // Paints one of the views into words, one for each pixel; elements that say what the colours mean.
 const PAINT = {
   left: (words, { pair }) => (paintPicture(words, pair.left), ["The left picture: answers belong to it."]),
   right: (words, { pair }) => (paintPicture(words, pair.right), ["The right picture."]),
   disparity: (words, { planes }) => {
     const found = paintNumbers(words, planes.disparity, NO_ANSWER, true);
-    if (!found) return ["No pixel has an answer."];
+    if (!found) return [NO_ANSWERS];
     return rampLegend(found.map((raw) => `${(raw / STEPS_PX).toFixed(1)} px`));
   },
   depth: (words, { planes, hasDepth, rig }) => {
     if (!hasDepth) {
       words.fill(BLACK);
-      return ["No depth: give focal length and baseline under Cameras."];
+      return [NO_CAMERAS];
     }
     // A disparity has one depth, so that there are fewer of them than of pixels.
     const depths = Uint16Array.from({ length: NO_ANSWER }, (_, steps) => paintedMm(depthOf(steps, rig)));
     const found = paintNumbers(words, planes.disparity.map((steps) => depths[steps] ?? 0), 0, false);
-    if (!found) return ["No answer that is shown has a distance."];
+    if (!found) return [NO_DISTANCE];
     const [near, far] = found.map((mm) => `${(mm / 1000).toFixed(2)} m`);
     return rampLegend([counts[FARTHEST_MM] > 0 ? `${far} and beyond` : far, near]);
   },

@@ -76,8 +76,10 @@ function putPicture() {
 // What is said below so many points.
 function cloudWords(count) {
   if (count === null) return "This browser has no WebGL, which the view of points takes.";
-  if (count === 0) return "No points: give focal length and baseline under Cameras.";
-  const beyond = cloud.beyond > 0 ? `, without ${cloud.beyond} beyond ${FARTHEST_MM / 1000} m` : "";
+  const farthest = `beyond ${FARTHEST_MM / 1000} m`;
+  if (count === 0 && cloud.beyond > 0) return `No points: all answers that are shown are ${farthest}.`;
+  if (count === 0) return state.hasDepth ? NO_DISTANCE : NO_CAMERAS;
+  const beyond = cloud.beyond > 0 ? `, without ${cloud.beyond} ${farthest}` : "";
   return `${count} points${beyond}; drag to turn, with the right button to move, turn the wheel to come `
     + "nearer.";
 }

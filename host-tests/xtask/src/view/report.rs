@@ -42,6 +42,7 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
             format!("the report's view {view} is empty")
         })?;
     }
+    without_answers_it_asks_for_nothing(&mut page)?;
     page.press("view-disparity")?;
     page.browser.value("cursor.x = 300; cursor.y = 200; canvas.focus()")?;
     page.key("ArrowDown")?;
@@ -55,6 +56,25 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
     let thrown = page.thrown();
     hold(thrown.is_empty(), || format!("not caught in the report: {thrown:?}"))?;
     Ok(())
+}
+
+/// Where the sliders keep back all answers, the views say that; a report has no cameras that one could give.
+fn without_answers_it_asks_for_nothing(page: &mut LivePage) -> Outcome {
+    let ends = page.browser.value("['min', 'max'].map((end) => Number(byId('near')[end]))")?;
+    let [low, high] = [0, 1].map(|end| ends[end].as_i64().unwrap_or(0));
+    page.set("near", low)?;
+    page.set("far", high)?;
+    for (view, line) in [
+        ("disparity", "No pixel has an answer that is shown."),
+        ("depth", "No answer that is shown has a distance."),
+        ("points", "No answer that is shown has a distance."),
+    ] {
+        page.press(&format!("view-{view}"))?;
+        let legend = page.text("legend")?;
+        hold(legend == line, || format!("without answers {view} says '{legend}'"))?;
+    }
+    page.set("near", high)?;
+    page.set("far", low)
 }
 
 /// While keys move the cursor, the picture shows where it is, and not what it is on.
@@ -107,8 +127,8 @@ fn a_tap_tells_its_pixel(page: &mut LivePage) -> Outcome {
     })
 }
 
-/// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have fewer
-/// of them than the files.
+/// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have
+/// fewer of them than the files.
 pub fn pixels_are_those_of_the_files(page: &mut LivePage, run: &Path) -> Outcome {
     let (map, depth) = (numbers(&run.join("disparity.pfm"))?, numbers(&run.join("depth.pfm"))?);
     let open = |name: &str| {

@@ -51,8 +51,7 @@ pub fn it_answers_as_the_files_do(stereo: &Path, scene: &Path) -> Outcome {
     hold(thrown.is_empty(), || format!("not caught: {thrown:?}"))
 }
 
-/// Beyond all colours answers have the last one, of which the legend says that, and at infinity the slider says
-/// that.
+/// What is beyond all colours has the last one, and the legend says so; at infinity the slider says that.
 fn what_is_far_has_a_colour_and_a_distance(page: &mut LivePage) -> Outcome {
     page.press("view-depth")?;
     let black = page.browser.value(

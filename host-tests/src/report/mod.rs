@@ -115,9 +115,13 @@ impl Report<'_> {
     /// The few figures that come first; HTML.
     fn headline(&self) -> String {
         let s = self.summary;
+        let threads = match s.threads {
+            1 => "for the frame, one thread".to_owned(),
+            threads => format!("for the frame, {threads} threads"),
+        };
         let mut items = vec![
             (percent(s.density), "of the pixels answered"),
-            (format!("{:.1} ms", s.time_ms), "for the frame, one thread"),
+            (format!("{:.1} ms", s.time_ms), threads.as_str()),
             (format!("{:.1} KB", s.state_bytes as f64 / 1000.0), "of matcher state"),
             (s.latency_lines.to_string(), "lines of delay"),
         ];

@@ -75,6 +75,9 @@ pub struct Summary {
     /// The least confidence that an answer keeps.
     #[serde(skip)]
     min_confidence: u8,
+    /// How many threads shared the frame.
+    #[serde(skip)]
+    pub(super) threads: usize,
 }
 
 /// What was made of grey levels: `gain grey + offset`.
@@ -218,6 +221,7 @@ impl Summary {
             pair: None,
             accuracy,
             min_confidence: config.min_confidence,
+            threads: outcome.threads,
         }
     }
 

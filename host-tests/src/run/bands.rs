@@ -51,13 +51,14 @@ impl Bands {
                     map.put(usize::from(y - first), row);
                 }
             })?;
-            Ok(Outcome { map, kernel, time_ms })
+            Ok(Outcome { map, kernel, time_ms, threads: 1 })
         });
         let mut results = results.into_iter();
         let mut whole = results.next().expect("a frame has a row")?;
         for result in results {
             let band: Outcome = result?;
             whole.map.append(band.map);
+            whole.threads += 1;
             whole.time_ms = whole.time_ms.max(band.time_ms);
         }
         Ok(whole)

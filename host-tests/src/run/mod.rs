@@ -92,6 +92,8 @@ pub struct Outcome {
     /// The pipeline's time for the frame, milliseconds: taking lines, census, matching and all checks. The
     /// uncertainties are worked out beside it.
     pub time_ms: f64,
+    /// How many threads shared the frame.
+    pub threads: usize,
 }
 
 /// What matches, and on what.
@@ -141,7 +143,7 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
     };
     let (kernel, time_ms) =
         with_method!(options.method, S => frame(options, &mut *hold::<S>(), config, camera, &mut keep)?);
-    Ok(Outcome { map, kernel, time_ms })
+    Ok(Outcome { map, kernel, time_ms, threads: 1 })
 }
 
 /// One frame through a pipeline: the kernel that did it, and its time in milliseconds without that of `keep`.

@@ -70,11 +70,11 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
         let at = ((px - first) / range * bins as f32).max(0.0) as usize;
         counts[at.min(bins - 1)] += 1;
     }
-    let highest = counts.iter().copied().max().unwrap_or(0).max(1);
+    let highest = counts.iter().copied().max().unwrap_or(0);
     let step = CHART[0] / bins as f32;
     let mut columns = String::new();
     for (i, &count) in counts.iter().enumerate() {
-        let height = CHART[1] * count as f32 / highest as f32;
+        let height = CHART[1] * count as f32 / highest.max(1) as f32;
         let _ = write!(
             columns,
             "<rect class=\"column\" x=\"{:.1}\" y=\"{:.1}\" width=\"{:.1}\" \
@@ -85,8 +85,12 @@ pub(super) fn histogram(map: &DisparityMap, min_disparity: u16, disparities: u16
             first + range * (i as f32 + 0.5) / bins as f32,
         );
     }
-    let share = 100.0 * highest as f64 / map.answers().max(1) as f64;
-    let note = format!("highest column: {share:.1} % of the answers");
+    let note = match map.answers() {
+        0 => "no pixel has an answer".to_owned(),
+        answers => {
+            format!("highest column: {:.1} % of the answers", 100.0 * highest as f64 / answers as f64)
+        }
+    };
     chart("Histogram of the disparities", &note, &columns, |t| format!("{:.0} px", first + t * range))
 }
 
@@ -139,7 +143,20 @@ pub(super) fn three_digits(value: f32) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::three_digits;
+    use super::{histogram, three_digits};
+    use crate::map::DisparityMap;
+    use stereopsis::units::Disparity;
+
+    #[test]
+    fn a_histogram_of_nothing_has_no_share() {
+        let mut map = DisparityMap::new(4, 1);
+        let drawn = histogram(&map, 0, 16);
+        assert!(drawn.contains("<figcaption>no pixel has an answer</figcaption>"), "{drawn}");
+        map.disparity[..3].copy_from_slice(&[1, 1, 9].map(Disparity::from_pixels));
+        let drawn = histogram(&map, 0, 16);
+        assert!(drawn.contains("<figcaption>highest column: 66.7 % of the answers</figcaption>"), "{drawn}");
+        assert_eq!(drawn.matches("height=\"75.0\"").count(), 1, "{drawn}");
+    }
 
     #[test]
     fn lengths_have_three_digits() {

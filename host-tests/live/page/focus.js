@@ -9,7 +9,7 @@ const metresOf = (steps) => `${Number((steps * DATA.depth_step_m).toPrecision(3)
 // The numbers of the stack: frames from 1, in parts, confidences, and depths in steps.
 async function decodeStack() {
   const decoded = async (name, url) => url && decodeUrl({ name, url });
-  const urls = [["all in focus", byId("all-in-focus").src], ["data", DATA.answers], ["data", DATA.depths]];
+  const urls = [[DATA.name, byId("all-in-focus").src], ["data", DATA.answers], ["data", DATA.depths]];
   const [picture, answers, depths] = await Promise.all(urls.map(([name, url]) => decoded(name, url)));
   const { width, height } = answers;
   const planes = { width, height, disparity: numbersOf(answers), confidence: bytesOf(answers),

@@ -7,7 +7,7 @@ const BAD_STEPS = 2 * STEPS_PX;
 async function decodeRun() {
   const decoded = async (name, url) => url && decodeUrl({ name, url });
   const urls = [byId("left-image").src, byId("right-image").src, DATA.answers, DATA.notes, DATA.truth];
-  const all = await Promise.all(urls.map((url, i) => decoded(["left", "right"][i] ?? "data", url)));
+  const all = await Promise.all(urls.map((url, i) => decoded(DATA.names[i] ?? "data", url)));
   const [left, right, answers, notes, truth] = all;
   const { width, height } = answers;
   const planes = { width, height, left: new Uint8Array(width * height), disparity: numbersOf(answers),

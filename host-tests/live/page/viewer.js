@@ -50,7 +50,15 @@ function show() {
   }
   cloud.isOn = isCloud;
   byId("legend").replaceChildren(...legend);
-  canvas.setAttribute("aria-label", `${view()} of ${state.pair.left.name}`);
+  canvas.setAttribute("aria-label", viewWords());
+}
+
+// The name of what is shown, for those who do not see it.
+function viewWords() {
+  const shown = view();
+  const { left, right = left } = state.pair;
+  if (["left", "right"].includes(shown)) return `${shown} picture, ${state.pair[shown].name}`;
+  return `${shown} of ${[...new Set([left.name, right.name])].join(" and ")}`;
 }
 
 // The picture as it was painted last, and on it the cursor while keys move it.

@@ -43,6 +43,7 @@ fn data(report: &Report<'_>) -> io::Result<Map<String, Value>> {
             .collect()
     });
     let mut data = looks();
+    data.insert("names".into(), json!([report.left_name, report.right_name]));
     data.insert("columns".into(), json!(map.width));
     data.insert("rows".into(), json!(map.height));
     data.insert("rig".into(), json!(report.rig.map(cameras)));

@@ -97,6 +97,7 @@ impl FocusReport<'_> {
             _ => (Disparity::NONE.raw(), 0),
         });
         let mut data = looks();
+        data.insert("name".into(), json!(self.name));
         data.insert("columns".into(), json!(self.width()));
         data.insert("rows".into(), json!(self.picture.height()));
         data.insert("frame_steps".into(), json!(steps));

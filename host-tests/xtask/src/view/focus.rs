@@ -58,6 +58,9 @@ pub fn it_answers_as_the_files_do(stereo: &Path, folder: &Path) -> Outcome {
         let (colours, legend) = (page.browser.value(COLOURS)?, page.text("legend")?);
         let is_shown = colours.as_i64() > Some(2) && !legend.is_empty();
         hold(is_shown, || format!("the view {view} has {colours} colours and says '{legend}'"))?;
+        let name = page.browser.value("canvas.getAttribute('aria-label')")?;
+        let due = format!("{} of {}", view.replace('-', " "), stack.display());
+        hold(name == due, || format!("the view {view} is called {name}, not '{due}'"))?;
     }
     page.keys_reach_everything(CONTROLS)?;
     let (requests, thrown) = (page.requests(), page.thrown());

@@ -41,6 +41,12 @@ pub fn it_answers_as_the_files_do(run: &Path) -> Outcome {
         hold(colours.as_i64() > Some(2) && !legend.is_empty(), || {
             format!("the report's view {view} is empty")
         })?;
+        let name = page.browser.value("canvas.getAttribute('aria-label')")?;
+        let due = match view {
+            "left" | "right" => format!("{view} picture, {view}.png"),
+            view => format!("{view} of left.png and right.png"),
+        };
+        hold(name == due, || format!("the view {view} is called {name}, not '{due}'"))?;
     }
     without_answers_it_asks_for_nothing(&mut page)?;
     page.press("view-disparity")?;

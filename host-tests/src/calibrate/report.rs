@@ -28,14 +28,22 @@ pub fn picture(left: &RgbImage, right: &RgbImage, view: &View, figures: &ViewFig
     picture
 }
 
-/// The cells of a picture as a drawing, the darker the more corners they hold; white without any.
-fn map(coverage: &Coverage) -> String {
+/// What the colours of [`map`] mean.
+const SHADES: &str = "The stronger the colour of a part, the more corners it holds, up to 20; a part without \
+                      colour holds none.";
+/// A part with so many corners has the strongest colour.
+const MANY: u32 = 20;
+
+/// The cells of a picture as a drawing with a name: the stronger coloured the more corners they hold, and not
+/// at all without any.
+fn map(name: &str, coverage: &Coverage) -> String {
     let (across, down) = (CELLS[0] * 30, CELLS[1] * 30);
-    let mut svg = format!("<svg viewBox=\"0 0 {across} {down}\" width=\"{across}\" role=\"img\">");
+    let mut svg = format!(
+        "<svg viewBox=\"0 0 {across} {down}\" width=\"{across}\" role=\"img\" aria-label=\"{name}\">"
+    );
     for (y, row) in coverage.corners.iter().enumerate() {
         for (x, &count) in row.iter().enumerate() {
-            // Twenty corners are many.
-            let share = f64::from(count.min(20)) / 20.0;
+            let share = f64::from(count.min(MANY)) / f64::from(MANY);
             let fill = if count == 0 { 0.0 } else { 0.25 + 0.75 * share };
             let _ = write!(
                 svg,
@@ -85,15 +93,15 @@ pub fn page(
             text,
             "<figure>{}<figcaption>The {name} picture: corners in {:.0} % of its parts.</figcaption>\
              </figure>",
-            map(coverage),
+            map(&format!("How many corners each part of the {name} picture holds"), coverage),
             100.0 * coverage.share()
         );
     }
     let [across, up] = found.tilts_deg();
     let _ = writeln!(
         text,
-        "</div><p>Boards are tilted by {across:.0} degrees to the left and right, and by {up:.0} up and down \
-         (root mean square).</p>\n<h2>Views</h2>"
+        "</div><p>{SHADES}</p><p>Boards are tilted by {across:.0} degrees to the left and right, and by \
+         {up:.0} up and down (root mean square).</p>\n<h2>Views</h2>"
     );
     text += "<figure class=\"scroll views\" tabindex=\"0\" role=\"region\" aria-label=\"The views\"><table>\
              <tr><th scope=\"col\">left</th><th scope=\"col\">right</th><th scope=\"col\">left, px</th><th \
@@ -121,4 +129,20 @@ pub fn page(
         );
     }
     text + "</div></body></html>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drawing_has_a_name_and_shades_by_corners() {
+        let mut coverage = Coverage { corners: [[0; CELLS[0]]; CELLS[1]] };
+        coverage.corners[0][..3].copy_from_slice(&[1, MANY, 2 * MANY]);
+        let drawn = map("a name", &coverage);
+        assert!(drawn.contains(" role=\"img\" aria-label=\"a name\">"), "{drawn}");
+        let shades: Vec<_> = drawn.split("fill-opacity=\"").skip(1).map(|rest| &rest[..4]).collect();
+        assert_eq!(shades[..4], ["0.29", "1.00", "1.00", "0.00"]);
+        assert!(SHADES.contains(&format!("up to {MANY};")));
+    }
 }

@@ -104,7 +104,7 @@ fn a_rig_is_calibrated_checked_and_converted() {
     let drawn = ["index.html", "view001.png", "view002.png", "view003.png", "view004.png", "view005.png"];
     assert_eq!(names(&bench.path("report")), drawn);
     let page = std::fs::read_to_string(bench.path("report/index.html")).expect("a page");
-    assert!(page.contains("Where boards were") && page.matches("<svg ").count() == 2, "{page}");
+    assert!(page.contains("The stronger the colour") && page.matches("<svg ").count() == 2, "{page}");
     assert!(page.contains("baseline ") && page.contains("What would make it better"), "{page}");
     // Boards in the middle tell the turn along the baseline and the principal points not apart well.
     let yaw = said.lines().find(|line| line.starts_with("yaw ")).unwrap_or_else(|| panic!("{said}"));

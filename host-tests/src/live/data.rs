@@ -105,11 +105,12 @@ impl Given<'_> {
 /// What the scripts know of cameras.
 pub fn cameras(rig: &RectifiedRig) -> Value {
     let (column, row) = rig.principal_point();
+    let exact = |value: f32| rounded(f64::from(value));
     json!({
-        "focal_px": rig.focal_px(),
+        "focal_px": exact(rig.focal_px()),
         "baseline_mm": rounded(f64::from(rig.baseline_m()) * 1000.0),
-        "offset_px": rig.disparity_offset_px(),
-        "centre_px": [column, row],
+        "offset_px": exact(rig.disparity_offset_px()),
+        "centre_px": [exact(column), exact(row)],
     })
 }
 

@@ -15,8 +15,9 @@ let isDrawing = false;
 
 const view = () => document.querySelector("input[name=view]:checked").value;
 
-// A button for each view, of which one is shown first.
+// A button for each view, of which one is shown first. Without the points their keys are not told of.
 function addViews(names, first = "disparity") {
+  if (!names.includes("points")) byId("point-keys").remove();
   names.forEach((name) => {
     const label = make("label");
     const id = `view-${name.replaceAll(" ", "-")}`;

@@ -98,6 +98,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     println!("{figures}");
     without_simd_it_says_so(&url)?;
     report::it_answers_as_the_files_do(&scene)?;
+    report::without_depths_it_tells_no_keys_of_points(stereo, &scene)?;
     wide::it_answers_as_the_files_do(stereo, &scene)?;
     focus::it_answers_as_the_files_do(stereo, folder)
 }

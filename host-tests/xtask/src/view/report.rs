@@ -2,10 +2,11 @@
 
 use super::browser::Browser;
 use super::page::{COLOURS, LivePage, failed, hold, numbers, url_of};
-use crate::steps::{Failure, Outcome};
+use crate::steps::{Failure, Outcome, output_of};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::Path;
+use std::process::Command;
 use stereopsis::units::PixelFlags;
 
 /// What can be used: ten views, of which two need a truth, two of which need depths; three sliders; the
@@ -131,6 +132,21 @@ fn a_tap_tells_its_pixel(page: &mut LivePage) -> Outcome {
     hold(is_near("column ", 320.0) && is_near("row ", 240.0), || {
         format!("a tap in the middle leads to '{said}'")
     })
+}
+
+/// Where nothing is known of the cameras there are no points, and no keys for them.
+pub fn without_depths_it_tells_no_keys_of_points(stereo: &Path, scene: &Path) -> Outcome {
+    let out = scene.join("plain");
+    let mut run = Command::new(stereo);
+    run.args(["match", "--disparities", "64", "--quiet", "--out"]).arg(&out);
+    for side in ["left", "right"] {
+        run.arg(format!("--{side}")).arg(scene.join(side).with_extension("png"));
+    }
+    output_of(&mut run)?;
+    let mut page = opened(&url_of(&out.join("report.html")))?;
+    let (keys, thrown) = (page.text("keys")?, page.thrown());
+    let is_right = keys == "Arrow keys move the cursor, with Shift by ten pixels." && thrown.is_empty();
+    hold(is_right, || format!("without points '{keys}' is said; {thrown:?}"))
 }
 
 /// The disparity, the depth, the confidence and the flags of pixels all over the picture, which may have

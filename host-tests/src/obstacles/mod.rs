@@ -3,14 +3,14 @@
 //! * [`ObstacleWatch`]: maps through the core's finder, its drive rule and its free space, which carry what
 //!   they know from frame to frame. [`WatchedFrame`]: what it looks at. [`Vehicle`]: for whom.
 //! * [`ObstacleRecord`]: what is found in a frame, as `obstacles.json` has it.
-//! * [`picture`]: stixels on the left image, sectors below it.
+//! * [`picture`]: stixels on the left image, sectors below it; [`COLOURS`]: what its colours mean.
 //! * [`Timeline`]: all frames as a table and as a picture.
 
 mod picture;
 mod record;
 mod timeline;
 
-pub use picture::picture;
+pub use picture::{COLOURS, picture};
 pub use record::ObstacleRecord;
 pub use timeline::Timeline;
 

@@ -9,6 +9,14 @@ pub(super) const OBSTACLE: Rgb<u8> = Rgb([0xd5, 0x5e, 0x00]);
 pub(super) const DROP: Rgb<u8> = Rgb([0xcc, 0x79, 0xa7]);
 pub(super) const BLIND: Rgb<u8> = Rgb([0x60, 0x60, 0x60]);
 
+/// What the colours of [`picture`] mean.
+pub const COLOURS: [(Rgb<u8>, &str); 4] = [
+    (FREE, "ground that is seen; in the strip below the image a free sector"),
+    (OBSTACLE, "an obstacle, the brighter the nearer; in the strip the brighter part is the higher"),
+    (DROP, "a drop"),
+    (BLIND, "in the strip a sector that is blind"),
+];
+
 /// The left image with the ground that is seen in green, obstacles in orange, the brighter the nearer, drops in
 /// purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind grey. The bright part
 /// of an obstacle's bar is the higher the nearer it is.

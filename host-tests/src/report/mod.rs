@@ -21,8 +21,9 @@ use crate::colour::{
 };
 use crate::live::STYLE;
 use crate::map::DisparityMap;
+use crate::obstacles::{self, ObstacleRecord};
 use crate::scene::Truth;
-use image::RgbImage;
+use image::{Rgb, RgbImage};
 use page::{Kind, caption, escape, figure, table};
 use std::io::{self, Write};
 use stereopsis::geometry::camera::RectifiedRig;
@@ -47,6 +48,8 @@ pub struct Report<'a> {
     pub rig: Option<&'a RectifiedRig>,
     /// The truth, when it is known.
     pub truth: Option<&'a Truth>,
+    /// What stands in the way and how it is drawn, where it was looked for.
+    pub obstacles: Option<(&'a ObstacleRecord, &'a RgbImage)>,
     /// The disparities of the darkest and the brightest colour, where they were asked for; else the answers'
     /// 2nd and 98th percentile.
     pub colours: Option<ColourScale>,
@@ -166,6 +169,16 @@ impl Report<'_> {
         let note = "Sure is bright: the second best candidate costs much more, and the answers around \
                     agree; black: no answer.";
         show("Confidence", Kind::Map, &confidence_picture(self.map), &caption(note))?;
+        if let Some((record, picture)) = self.obstacles {
+            let rows: String = obstacles::COLOURS
+                .iter()
+                .map(|(colour, meaning)| format!("<tr><th>{}{meaning}</th></tr>\n", swatch(*colour)))
+                .collect();
+            let note = "Obstacles in the image have the colours of their disparity: near is bright.";
+            let decision = caption(&format!("Decision: {}", record.line()));
+            let below = format!("{decision}<table>{rows}</table>{}", caption(note));
+            show("Obstacles", Kind::Photograph, picture, &below)?;
+        }
         // The tallest one last: what stands beside another one is as tall as that.
         show("Why pixels have no answer", Kind::Map, &flags_picture(self.map, self.left), &self.legend())?;
         Ok(())
@@ -183,23 +196,26 @@ impl Report<'_> {
             }
         }
         let share = |count: usize| percent(count as f64 / self.map.disparity.len().max(1) as f64);
-        let row = |[r, g, b]: [u8; 3], text: String, count| {
-            let swatch =
-                format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>");
-            format!("<tr><th>{swatch}{text}</th><td>{}</td></tr>\n", share(count))
+        let row = |colour, text: String, count| {
+            format!("<tr><th>{}{text}</th><td>{}</td></tr>\n", swatch(colour), share(count))
         };
-        let mut rows = row([0xb0; 3], "answered: the left image, pale".into(), answered);
+        let mut rows = row(Rgb([0xb0; 3]), "answered: the left image, pale".into(), answered);
         for (i, (_, name)) in PixelFlags::NAMES.iter().enumerate() {
-            rows += &row(FLAG_COLOURS[i].0, format!("{name}: {}", MEANINGS[i]), counts[i]);
+            rows += &row(FLAG_COLOURS[i], format!("{name}: {}", MEANINGS[i]), counts[i]);
         }
         if unnamed > 0 {
-            rows += &row(NO_ANSWER.0, "no reason given".into(), unnamed);
+            rows += &row(NO_ANSWER, "no reason given".into(), unnamed);
         }
         format!(
             "<table>{rows}</table>{}",
             caption("A pixel with several reasons has the colour of the first.")
         )
     }
+}
+
+/// A colour before what it means; HTML.
+fn swatch(Rgb([r, g, b]): Rgb<u8>) -> String {
+    format!("<span class=\"swatch\" style=\"background:#{r:02x}{g:02x}{b:02x}\"></span>")
 }
 
 fn percent(share: f64) -> String {

@@ -65,12 +65,18 @@ fn a_box_is_found_written_and_drawn() {
     let is_coloured = picture.pixels().filter(|p| p.0[0] != p.0[1]).count();
     assert!(is_coloured > 2000, "{is_coloured} pixels");
 
+    let page = fs::read_to_string(bench.path("out/report.html")).expect("the page");
+    let said = ["<h3>Obstacles</h3>", "<figcaption>Decision: slow, 0.", "a sector that is blind</th>"];
+    assert!(said.iter().all(|part| page.contains(part)), "the page shows what was found");
+
     // A run without it takes both files away.
     let run = stereo(arguments(&bench, &rig));
     assert!(run.status.success(), "{}", text(&run.stderr));
     for name in ["out/obstacles.json", "out/obstacles.png"] {
         assert!(!bench.path(name).exists(), "{name}");
     }
+    let page = fs::read_to_string(bench.path("out/report.html")).expect("the page");
+    assert!(!said.iter().any(|part| page.contains(part)), "the page shows what was not looked for");
 }
 
 #[test]

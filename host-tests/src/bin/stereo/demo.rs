@@ -61,6 +61,7 @@ pub fn run(args: &DemoArgs) -> Result<(), Failure> {
         summary: &summary,
         rig: Some(scale.rig()),
         truth: Some(&truth),
+        obstacles: None,
         colours: None,
     };
     let mut staging = Staging::new(&args.out)?;

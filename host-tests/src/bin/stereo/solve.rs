@@ -102,6 +102,8 @@ pub fn solve(
         summary: &summary,
         rig: scale.map(DepthScale::rig),
         truth: None,
+        // Of many pairs another run may see them anew, and leaves the page as it is.
+        obstacles: found.as_ref().filter(|_| mark.is_none()).map(|(record, picture)| (record, picture)),
         colours: args.colour_range,
     };
     let mut staging = Staging::new(&args.out)?;

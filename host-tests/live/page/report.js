@@ -1,7 +1,6 @@
 // The report's own script: a run's data in the views, as far as its sliders let them through.
 
 const MOST_ERROR_PX = 3;
-const BAD_STEPS = 2 * STEPS_PX;
 
 // The numbers of the run.
 async function decodeRun() {
@@ -14,7 +13,8 @@ async function decodeRun() {
     confidence: bytesOf(answers), flags: bytesOf(notes),
     sigma: Float32Array.from(numbersOf(notes), (n) => n / 1024) };
   toGrey(left, planes.left);
-  return { pair: { left, right }, planes, truth: truth ? numbersOf(truth) : null };
+  return { pair: { left, right }, planes, truth: truth ? numbersOf(truth) : null,
+    isBad: truth ? bytesOf(truth) : null };
 }
 
 function distance(steps) {
@@ -48,7 +48,7 @@ function sift() {
     shown += 1;
     if (!whole.truth || whole.truth[i] === NO_ANSWER) return;
     judged += 1;
-    bad += Number(Math.abs(d - whole.truth[i]) > BAD_STEPS);
+    bad += whole.isBad[i];
   });
   const percent = (part, all) => `${((100 * part) / Math.max(all, 1)).toFixed(2)} %`;
   const beside = whole.truth ? `, ${percent(bad, judged)} of them over 2 px off where both cameras see` : "";

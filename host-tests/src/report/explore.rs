@@ -37,10 +37,13 @@ fn data(report: &Report<'_>) -> io::Result<Map<String, Value>> {
     let sigmas = map.sigma_px.iter().map(|sigma| (sigma * SIGMA_PARTS).round() as u16);
     let notes = sigmas.zip(&map.flags).map(|(sigma, flags)| (sigma, flags.bits()));
     let truth = report.truth.map(|truth| {
+        let errors_px = Accuracy::errors_px(map, truth);
+        // Steps are too coarse to tell again which answers are bad.
+        let is_bad = errors_px.into_iter().map(|px| u8::from(px.is_finite() && px.abs() > Accuracy::BAD_PX));
         let pixels = Accuracy::true_disparity_px(truth).into_iter().zip(&truth.occluded);
-        pixels
-            .map(|(px, is_hidden)| (if *is_hidden { Disparity::NONE.raw() } else { in_steps(px) }, 0))
-            .collect()
+        let steps =
+            pixels.map(|(px, is_hidden)| if *is_hidden { Disparity::NONE.raw() } else { in_steps(px) });
+        steps.zip(is_bad).collect()
     });
     let mut data = looks();
     data.insert("names".into(), json!([report.left_name, report.right_name]));

@@ -174,9 +174,8 @@ impl Report<'_> {
                 .iter()
                 .map(|(colour, meaning)| format!("<tr><th>{}{meaning}</th></tr>\n", swatch(*colour)))
                 .collect();
-            let note = "Obstacles in the image have the colours of their disparity: near is bright.";
             let decision = caption(&format!("Decision: {}", record.line()));
-            let below = format!("{decision}<table>{rows}</table>{}", caption(note));
+            let below = format!("{decision}<table>{rows}</table>");
             show("Obstacles", Kind::Photograph, picture, &below)?;
         }
         // The tallest one last: what stands beside another one is as tall as that.

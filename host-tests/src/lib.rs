@@ -62,6 +62,7 @@ pub mod obstacles;
 pub mod odometry;
 pub mod output;
 pub mod pair;
+pub mod partners;
 pub mod pfm;
 pub mod ply;
 pub mod real;

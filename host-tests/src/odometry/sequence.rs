@@ -1,6 +1,7 @@
 //! The frames of a folder: `left` and `right`, in the order of their names.
 
 use crate::focus::stack::{StackError, images, read};
+use crate::partners::alone;
 use image::GrayImage;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -172,21 +173,11 @@ pub fn numbered(folder: &Path) -> Vec<String> {
         .collect()
 }
 
-/// Whether both cameras have the same frames: the same names, or, where no name is in both, as many.
+/// Whether both cameras have the same frames, by their names; or, where names do not say so, as many.
 fn partners(left: &[PathBuf], right: &[PathBuf], folder: &Path, other: &Path) -> Result<(), SequenceError> {
-    let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_owned());
-    let (left_stems, right_stems): (Vec<_>, Vec<_>) =
-        (left.iter().map(stem).collect(), right.iter().map(stem).collect());
-    if left_stems.iter().any(|stem| right_stems.contains(stem)) {
-        let without = |from: &[PathBuf], stems: &[Option<std::ffi::OsString>]| {
-            from.iter().find(|path| !stems.contains(&stem(path))).cloned()
-        };
-        if let Some(path) = without(left, &right_stems) {
-            return Err(SequenceError::Partner { path, other: other.to_owned() });
-        }
-        if let Some(path) = without(right, &left_stems) {
-            return Err(SequenceError::Partner { path, other: folder.to_owned() });
-        }
+    if let Some((path, is_left)) = alone(left, right) {
+        let (path, other) = (path.to_owned(), if is_left { other } else { folder }.to_owned());
+        return Err(SequenceError::Partner { path, other });
     }
     if left.len() != right.len() {
         let (path, other) = (folder.to_owned(), other.to_owned());

@@ -1,8 +1,9 @@
 //! Images as a stereo source at a frame rate.
 
+use crate::focus::stack;
 use crate::limits::IMAGE_SIDE;
 use crate::mock::{MockCamera, MockError};
-use alphanumeric_sort::sort_path_slice;
+use crate::partners::alone;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -29,6 +30,14 @@ pub enum PicturesError {
         path: PathBuf,
         /// What the operating system says.
         source: io::Error,
+    },
+    /// An image of one side has no partner.
+    #[error("{}: has no partner in {}; every left image needs a right one", path.display(), other.display())]
+    Partner {
+        /// The image.
+        path: PathBuf,
+        /// Where its partner should be.
+        other: PathBuf,
     },
     /// The two sides are not the same number of images.
     #[error("{} has {lefts} images and {} has {rights}; give one for each side of every \
@@ -68,9 +77,20 @@ pub struct Pictures {
 }
 
 impl Pictures {
-    /// Two images, or two folders whose images belong together in the order of their names, at a frame rate.
+    /// Two images, or two folders whose images belong together by their names, at a frame rate.
     pub fn open(left: &Path, right: &Path, frames_per_second: f64) -> Result<Self, PicturesError> {
-        let (lefts, rights) = (images(left)?, images(right)?);
+        Self::of([(left, images(left)?), (right, images(right)?)], frames_per_second)
+    }
+
+    /// The images of the left and of the right side, and what each side is called, at a frame rate.
+    pub fn of(
+        [(left, lefts), (right, rights)]: [(&Path, Vec<PathBuf>); 2],
+        frames_per_second: f64,
+    ) -> Result<Self, PicturesError> {
+        if let Some((path, is_left)) = alone(&lefts, &rights) {
+            let (path, other) = (path.into(), if is_left { right } else { left }.into());
+            return Err(PicturesError::Partner { path, other });
+        }
         if lefts.len() != rights.len() {
             let (lefts, rights) = (lefts.len(), rights.len());
             return Err(PicturesError::Counts { left: left.into(), lefts, right: right.into(), rights });
@@ -114,14 +134,7 @@ fn images(path: &Path) -> Result<Vec<PathBuf>, PicturesError> {
     if !fs::metadata(path).map_err(failed)?.is_dir() {
         return Ok(vec![path.into()]);
     }
-    let is_image = |path: &PathBuf| {
-        let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
-        ["png", "jpg", "jpeg", "pgm", "ppm", "pnm", "tif", "tiff", "bmp", "webp"].contains(&ending.as_str())
-    };
-    let entries = fs::read_dir(path).map_err(failed)?.map(|entry| entry.map(|entry| entry.path()));
-    let mut images: Vec<_> = entries.collect::<Result<_, _>>().map_err(failed)?;
-    images.retain(is_image);
-    sort_path_slice(&mut images);
+    let images = stack::images(path).map_err(failed)?;
     if images.is_empty() { Err(PicturesError::Empty { path: path.into() }) } else { Ok(images) }
 }
 

@@ -24,6 +24,7 @@ mod odometry_gaps;
 mod odometry_refused;
 mod output;
 mod pair;
+mod partners;
 mod plan;
 mod program;
 mod rectify;

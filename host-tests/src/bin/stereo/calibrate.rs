@@ -39,7 +39,7 @@ The file is OpenCV's YAML (K1, D1, K2, D2, R, T, E, F) with lengths in metres; m
 
 #[derive(Debug, Args)]
 pub struct CalibrateArgs {
-    /// The left camera's images, as files or as a pattern with * and ?
+    /// The left camera's images, as files, a folder, or a pattern with * and ?
     #[arg(long, value_name = "GLOB", required = true, num_args = 1..)]
     pub left: Vec<String>,
     /// The right camera's images

@@ -2,8 +2,9 @@
 
 use crate::failure::Failure;
 use alphanumeric_sort::sort_path_slice;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use stereopsis_host::focus::stack::images;
+use stereopsis_host::partners::{number, numbered};
 
 /// Left and right images by the last number in their names; by their order where names have none.
 pub fn pairs(
@@ -12,13 +13,6 @@ pub fn pairs(
     notes: &mut Vec<String>,
 ) -> Result<Vec<[PathBuf; 2]>, Failure> {
     let (left, right) = (files("--left", left)?, files("--right", right)?);
-    let numbered = |paths: &[PathBuf]| -> Option<BTreeMap<u64, PathBuf>> {
-        let found: BTreeMap<_, _> =
-            paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
-        // Some may have none, but no two the same.
-        let count = paths.iter().filter(|path| number(path).is_some()).count();
-        (found.len() == count && count > 0).then_some(found)
-    };
     if let (Some(mut of_left), Some(mut of_right)) = (numbered(&left), numbered(&right))
         && of_left.keys().any(|key| of_right.contains_key(key))
     {
@@ -45,11 +39,9 @@ pub fn pairs(
     Ok(left.into_iter().zip(right).map(|(left, right)| [left, right]).collect())
 }
 
-/// The last number in a file's name.
-fn number(path: &Path) -> Option<u64> {
-    let name = path.file_stem()?.to_str()?;
-    let tail = name.trim_end_matches(|c: char| !c.is_ascii_digit());
-    tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+/// Whether a name is no file's, and stands for several.
+pub fn is_pattern(path: &Path) -> bool {
+    !path.exists() && path.to_string_lossy().contains(['*', '?', '['])
 }
 
 /// The first two neighbours between which files seem to be missing: their numbers are farther apart than most
@@ -65,13 +57,22 @@ pub fn gap(files: &[&Path]) -> Option<[PathBuf; 2]> {
     Some([files[place].to_owned(), files[place + 1].to_owned()])
 }
 
-/// The files that patterns name, in the order of their names, numbers by their value.
+/// The files that patterns and folders name, in the order of their names, numbers by their value.
 pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for pattern in patterns {
         // A name with brackets in it may be a file's.
         if Path::new(pattern).is_file() {
             found.push(pattern.into());
+            continue;
+        }
+        if Path::new(pattern).is_dir() {
+            let inside = images(Path::new(pattern));
+            let inside = inside.map_err(|e| Failure::new(format!("{option} {pattern}: {e}")))?;
+            if inside.is_empty() {
+                return Err(Failure::new(format!("{option} {pattern}: holds no image")));
+            }
+            found.extend(inside);
             continue;
         }
         let paths = glob::glob(pattern).map_err(|e| Failure::new(format!("{option} {pattern}: {e}")))?;
@@ -81,7 +82,7 @@ pub fn files(option: &str, patterns: &[String]) -> Result<Vec<PathBuf>, Failure>
         }
         if found.len() == before {
             return Err(Failure::new(format!(
-                "{option} {pattern}: there is no such file; name the images, as 'left*.png'"
+                "{option} {pattern}: there is no such file; name the images, as 'left*.png', or their folder"
             )));
         }
     }

@@ -1,10 +1,11 @@
 //! `stereo record`: a recording from images, with faults if they are wanted.
 
 use crate::failure::Failure;
+use crate::image_files::{files, is_pattern};
 use crate::place::Place;
 use crate::shared::{print, rate, whole};
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::fault::{Fault, Faulty};
 use stereopsis_host::recording::{Pictures, record};
@@ -13,7 +14,8 @@ use stereopsis_host::recording::{Pictures, record};
 pub const EXAMPLE: &str = "Example:
   stereo record --left left.png --right right.png --frames 10 --faults 0.01 --out field.lines
 
---left and --right are an image each, or folders whose images belong together in the order of their names. \
+--left and --right are an image each, or folders or patterns in quotes, whose images belong together by the \
+                           last number in their names, or, where these have none, by their order. \
                            With --faults each line has a fault with that probability, as cameras have them: \
                            lines that are dropped, torn, late, old or repeated, bus errors, time-outs, \
                            short frames, lost sync. A recording begins with two lines of text; the \
@@ -22,10 +24,10 @@ pub const EXAMPLE: &str = "Example:
 
 #[derive(Debug, Args)]
 pub struct RecordArgs {
-    /// The left image, or a folder of them
+    /// The left image, or a folder of them, or a pattern in quotes, as 'left*.png'
     #[arg(long, value_name = "FILE|DIR")]
     pub left: PathBuf,
-    /// The right image, or a folder of them
+    /// The right image, or those
     #[arg(long, value_name = "FILE|DIR")]
     pub right: PathBuf,
     /// How many frames, 1 to 60000; by default each pair once. They begin again after the last
@@ -55,7 +57,13 @@ fn probability(text: &str) -> Result<f64, &'static str> {
 }
 
 pub fn run(args: &RecordArgs) -> Result<(), Failure> {
-    let pictures = Pictures::open(&args.left, &args.right, args.fps)?;
+    let pictures = if is_pattern(&args.left) || is_pattern(&args.right) {
+        let named = |option, path: &Path| files(option, &[path.to_string_lossy().into_owned()]);
+        let [left, right] = [named("--left", &args.left)?, named("--right", &args.right)?];
+        Pictures::of([(&args.left, left), (&args.right, right)], args.fps)?
+    } else {
+        Pictures::open(&args.left, &args.right, args.fps)?
+    };
     let place = Place::of("--out", &args.out)?;
     let frames = args.frames.map_or(pictures.frames() as u32, u32::from);
     let faults: &[Fault] = if args.faults > 0.0 { &Fault::ALL } else { &[] };

@@ -1,14 +1,13 @@
 //! Where the images of `match` come from: two files, a picture of both cameras, many of them, or raw frames.
 
 use crate::failure::Failure;
-use crate::image_files;
+use crate::image_files::{self, is_pattern};
 use crate::input::Pair;
 use clap::Args;
 use image::{DynamicImage, GrayImage};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use stereopsis_host::focus::stack::images;
 use stereopsis_host::limits::{self, IMAGE_SIDE};
 use stereopsis_host::mock::MockCamera;
 
@@ -83,7 +82,7 @@ impl SourceArgs {
         if !are_folders && !is_pattern(left) && !is_pattern(right) {
             return Ok(Sources::One(Input::Files([left.clone(), right.clone()])));
         }
-        let [left, right] = [named("--left", left)?, named("--right", right)?];
+        let [left, right] = [left, right].map(|path| [path.to_string_lossy().into_owned()]);
         let pairs = image_files::pairs(&left, &right, notes)?;
         Ok(Sources::Many(pairs.into_iter().map(Input::Files).collect()))
     }
@@ -106,27 +105,9 @@ impl SourceArgs {
         if !path.is_dir() && !is_pattern(path) {
             return Ok(Sources::One(Input::SideBySide(path.to_owned())));
         }
-        let files = image_files::files("--side-by-side", &named("--side-by-side", path)?)?;
+        let files = image_files::files("--side-by-side", &[path.to_string_lossy().into_owned()])?;
         Ok(Sources::Many(files.into_iter().map(Input::SideBySide).collect()))
     }
-}
-
-/// Whether a name is no file's, and stands for several.
-fn is_pattern(path: &Path) -> bool {
-    !path.exists() && path.to_string_lossy().contains(['*', '?', '['])
-}
-
-/// The pattern, or the images of a folder.
-fn named(option: &str, path: &Path) -> Result<Vec<String>, Failure> {
-    let said = |path: &Path| path.to_string_lossy().into_owned();
-    if !path.is_dir() {
-        return Ok(vec![said(path)]);
-    }
-    let found = images(path).map_err(|e| Failure::new(format!("{option} {}: {e}", path.display())))?;
-    if found.is_empty() {
-        return Err(Failure::new(format!("{option} {}: holds no image", path.display())));
-    }
-    Ok(found.iter().map(|path| said(path)).collect())
 }
 
 impl Input {

@@ -37,7 +37,7 @@ Images alone do not say how large things are: without --baseline lengths are in 
 
 #[derive(Debug, Args)]
 pub struct StructureArgs {
-    /// The images, a pattern or several: 2 to 60
+    /// The images, a folder, a pattern, or several: 2 to 60
     #[arg(long, value_name = "GLOB", required = true, num_args = 1..)]
     pub images: Vec<String>,
     /// The camera's calibration: any file that other commands read; of a pair's the first camera

@@ -1,0 +1,77 @@
+//! Which images of two cameras belong together, by their names.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
+
+/// The last number in a file's name.
+pub fn number(path: &Path) -> Option<u64> {
+    let name = path.file_stem()?.to_str()?;
+    let tail = name.trim_end_matches(|c: char| !c.is_ascii_digit());
+    tail.rsplit(|c: char| !c.is_ascii_digit()).next()?.parse().ok()
+}
+
+/// Images by the last number in their names, where some have one and no two the same.
+pub fn numbered(paths: &[PathBuf]) -> Option<BTreeMap<u64, PathBuf>> {
+    let found: BTreeMap<_, _> = paths.iter().filter_map(|path| Some((number(path)?, path.clone()))).collect();
+    // Some may have none, but no two the same.
+    let count = paths.iter().filter(|path| number(path).is_some()).count();
+    (found.len() == count && count > 0).then_some(found)
+}
+
+/// The first image that has no partner on the other side, and whether it is a left one: by their names, where
+/// one is on both sides, else by the last numbers in them, where all have one. `None` too where names do not
+/// say which belong together.
+pub fn alone<'a>(left: &'a [PathBuf], right: &'a [PathBuf]) -> Option<(&'a Path, bool)> {
+    fn stem(path: &PathBuf) -> Option<&OsStr> {
+        path.file_stem()
+    }
+    let numbers = |path: &PathBuf| number(path);
+    let are_numbered =
+        [left, right].iter().all(|side| numbered(side).is_some_and(|all| all.len() == side.len()));
+    without(left, right, stem).or_else(|| without(left, right, numbers).filter(|_| are_numbered)).flatten()
+}
+
+/// The first image whose key the other side has not; `None` outside where no key is on both sides.
+fn without<'a, K: Ord>(
+    left: &'a [PathBuf],
+    right: &'a [PathBuf],
+    key: impl Fn(&'a PathBuf) -> Option<K>,
+) -> Option<Option<(&'a Path, bool)>> {
+    let [of_left, of_right] = [left, right].map(|side| side.iter().filter_map(&key).collect::<BTreeSet<_>>());
+    if of_left.is_disjoint(&of_right) {
+        return None;
+    }
+    let lone = |side: &'a [PathBuf], others: &BTreeSet<K>| {
+        side.iter().find(|path| key(path).is_none_or(|key| !others.contains(&key)))
+    };
+    let of_one = lone(left, &of_right).map(|path| (path.as_path(), true));
+    Some(of_one.or_else(|| lone(right, &of_left).map(|path| (path.as_path(), false))))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn paths(names: &[&str]) -> Vec<PathBuf> {
+        names.iter().map(PathBuf::from).collect()
+    }
+
+    fn lone(left: &[&str], right: &[&str]) -> Option<(String, bool)> {
+        let (left, right) = (paths(left), paths(right));
+        alone(&left, &right).map(|(path, is_left)| (path.display().to_string(), is_left))
+    }
+
+    #[test]
+    fn what_has_no_partner_is_named() {
+        let found = |name: &str, is_left| Some((name.to_owned(), is_left));
+        assert_eq!(lone(&["1.png", "2.png"], &["1.png", "3.png"]), found("2.png", true));
+        assert_eq!(lone(&["1.png"], &["1.jpg", "3.png"]), found("3.png", false));
+        assert_eq!(lone(&["L_1.png", "L_2.png"], &["R_2.png", "R_3.png"]), found("L_1.png", true));
+        assert_eq!(lone(&["L_1.png", "L_2.png"], &["R_1.png", "R_2.png"]), None);
+        // Names that say nothing: one without a number, a number twice, and none on both sides.
+        assert_eq!(lone(&["L_1.png", "L.png"], &["R_1.png", "R_2.png"]), None);
+        assert_eq!(lone(&["L_1.png", "M_1.png"], &["R_1.png", "R_2.png"]), None);
+        assert_eq!(lone(&["L_1.png"], &["R_2.png"]), None);
+    }
+}

@@ -34,13 +34,19 @@ impl std::fmt::Display for Signed {
     }
 }
 
-/// Warns of a pair that is off.
+/// Pairs of views from which on an estimate that is not sure says something, too.
+const FEWEST_PAIRS: u32 = 3;
+
+/// Warns of a pair that is off, also where the estimate is not sure enough to correct the pair by it: of
+/// images that are not of one moment it never is.
 pub fn warn_of(rig: Option<&RigEstimate<f64>>, calib: &Path) {
-    let Some(rig) = rig.filter(|rig| rig.is_off()) else { return };
+    let told = rig.filter(|rig| rig.pairs >= FEWEST_PAIRS).map(|rig| RigEstimate { is_sure: true, ..*rig });
+    let Some(rig) = told.filter(RigEstimate::is_off) else { return };
     let done = if rig.is_applied { "the poses are corrected for it" } else { "distances are wrong by it" };
     remark(&format!(
-        "warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or \
-         its principal point is another; {done}; calibrate the pair again",
+        "warning: {}: disparities lack {:+.2} px (deviation {:.2}): the right camera is turned, or its \
+         principal point is another, or the two images of a pair are not of one moment; {done}; calibrate \
+         the pair again, or let both cameras expose together",
         calib.display(),
         rig.disparity_px,
         rig.sigma_px

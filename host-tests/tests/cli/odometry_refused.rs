@@ -1,7 +1,7 @@
 //! Cameras that `odometry` refuses.
 
 use super::odometry::walk;
-use super::support::{Bench, stereo};
+use super::support::{Bench, stereo, text};
 use std::path::Path;
 
 #[test]
@@ -30,4 +30,27 @@ fn swapped_cameras_are_refused_unless_forced() {
     }
     args.pop();
     bench.refused(&args, "the same picture");
+}
+
+#[test]
+fn where_all_frames_are_lost_is_no_success() {
+    let bench = Bench::new();
+    let street = walk(&bench, "4");
+    let (calib, out) = (format!("{street}/calib.txt"), bench.path("found.txt"));
+    let follow = || {
+        let to = out.display().to_string();
+        stereo(["odometry", "--sequence", &street, "--calib", &calib, "--force", "--out", &to])
+    };
+    let change = |change: &dyn Fn(&mut image::GrayImage), frames: std::ops::Range<u32>| {
+        for path in frames.map(|n| bench.path(&format!("street/right/{n:06}.png"))) {
+            let mut picture = image::open(&path).expect("a frame").into_luma8();
+            change(&mut picture);
+            picture.save(path).expect("room");
+        }
+    };
+    change(&|picture| picture.fill(0), 0..4);
+    let run = follow();
+    let said = text(&run.stderr);
+    assert!(run.status.code() == Some(1) && said.contains("street: 3 of 3 frames are lost"), "{said}");
+    assert_eq!(std::fs::read_to_string(out).expect("poses").lines().count(), 4, "they are written");
 }

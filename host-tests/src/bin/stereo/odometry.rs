@@ -18,11 +18,13 @@ use stereopsis::geometry::{
     camera::ImageSize,
     rectify::{Crop, Rectification},
 };
+use stereopsis::motion::odometry::State;
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::odometry::picture::svg;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as follow};
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
+use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::rectify::{RectifiedPictures, RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
 use summary::{beside, summary};
@@ -166,7 +168,26 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     };
     place.write_all(found, others)?;
     warn_of(trajectory.rigs.last(), args.calib.first().map_or(Path::new(""), PathBuf::as_path));
-    print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))
+    print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))?;
+    judge(&trajectory, &args.sequence)
+}
+
+/// Warns where most frames are lost, and fails where all are: what is written of them is then a guess.
+fn judge(trajectory: &Trajectory, sequence: &Path) -> Result<(), Failure> {
+    let frames = trajectory.steps.len().saturating_sub(1);
+    let lost = trajectory.count(State::Lost) + trajectory.count(State::Restarted);
+    let what = format!(
+        "{}: {lost} of {frames} frames are lost, and their poses are guessed: frames need texture and light, \
+         points in common with the one before, and a right image that is not turned or mirrored",
+        sequence.display()
+    );
+    if lost > 0 && lost == frames {
+        return Err(Failure::new(what));
+    }
+    if 2 * lost > frames {
+        remark(&format!("warning: {what}"));
+    }
+    Ok(())
 }
 
 /// The time of each frame, or its number.

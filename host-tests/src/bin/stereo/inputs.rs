@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// The options that name results; all others name what is read, if they name a file.
-const RESULTS: [&str; 4] = ["--out", "--picture", "--states", "--report"];
+const RESULTS: [&str; 5] = ["--out", "--picture", "--states", "--report", "--csv"];
 /// The folders of a pair's images in a folder.
 const SIDES: [&str; 2] = ["left", "right"];
 /// The endings of images.
@@ -84,6 +84,7 @@ mod tests {
         };
         assert_eq!(args(&[("--left", "a.png"), ("--out", "b.csv")]), [path("a.png")]);
         assert_eq!(args(&[("--out", "a.png"), ("--matches", "b.csv")]), [path("b.csv")]);
+        assert_eq!(args(&[("--found", "a.png"), ("--csv", "b.csv")]), [path("a.png")]);
         assert_eq!(args(&[("--sequence", "frames")]), [path("frames/left/1.PNG")]);
         assert_eq!(args(&[("--left", "*.png"), ("--picture", "b.csv")]), [path("a.png")]);
         let equals = format!("--left={}", path("a.png").display());

@@ -83,6 +83,13 @@ fn two_files() {
 }
 
 fn row(samples: &[u8]) -> GrayImage {
+    assert!(text(&run.stderr).contains("f.png: 100 % of the answers are over 2 px off"), "{halves}");
+    // The table is a result, also where there is one already.
+    for _ in 0..2 {
+        let csv = bench.path("table.csv").display().to_string();
+        evaluated(&["--found", &found, "--truth", &truth, "--csv", &csv]);
+        assert!(fs::read_to_string(csv).expect("a table").contains("found.pfm,75.00,"));
+    }
     GrayImage::from_raw(samples.len() as u32, 1, samples.to_vec()).expect("a row")
 }
 

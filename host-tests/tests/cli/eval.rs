@@ -78,11 +78,11 @@ fn two_files() {
     assert_eq!(mean["confidence_from_oracle"], 0.0);
     assert_eq!(mean["occluded"], serde_json::json!({ "density": 0.0, "bad2": 0.0, "missed": 1.0 }));
     // Steps of 1/128 px are twice as many pixels.
-    let halves = evaluated(&["--found", &found_png, "--truth", &truth_png, "--found-scale", "128"]);
+    // They are named: hardly anything is right.
+    let run =
+        stereo(["eval", "--json", "--found", &found_png, "--truth", &truth_png, "--found-scale", "128"]);
+    let halves: Value = serde_json::from_slice(&run.stdout).expect("JSON");
     assert_eq!(halves["mean"]["bad4"], 1.0);
-}
-
-fn row(samples: &[u8]) -> GrayImage {
     assert!(text(&run.stderr).contains("f.png: 100 % of the answers are over 2 px off"), "{halves}");
     // The table is a result, also where there is one already.
     for _ in 0..2 {
@@ -90,6 +90,9 @@ fn row(samples: &[u8]) -> GrayImage {
         evaluated(&["--found", &found, "--truth", &truth, "--csv", &csv]);
         assert!(fs::read_to_string(csv).expect("a table").contains("found.pfm,75.00,"));
     }
+}
+
+fn row(samples: &[u8]) -> GrayImage {
     GrayImage::from_raw(samples.len() as u32, 1, samples.to_vec()).expect("a row")
 }
 
@@ -102,6 +105,12 @@ fn depths_are_disparities_by_a_calibration() {
     let depths = FOUND.map(|px| if px.is_finite() { 20.0 / (px + 1.0) } else { NONE });
     let found = put(&bench, "depth.pfm", &float_map(&depths));
     is_as_worked_by_hand(&evaluated(&["--found", &found, "--truth", &truth, "--depths-by", &calib])["mean"]);
+    // A truth in depths, too.
+    let true_depths = put(&bench, "true.pfm", &float_map(&TRUTH.map(|px| 20.0 / (px + 1.0))));
+    let both = ["--found", &found, "--truth", &true_depths, "--depths-by", &calib];
+    is_as_worked_by_hand(&evaluated(&[&both[..], &["--truth-depths"]].concat())["mean"]);
+    let run = stereo([&["eval"], &both[..]].concat());
+    assert!(text(&run.stderr).contains("--truth-depths for a truth in metres"), "{}", text(&run.stderr));
 }
 
 #[test]

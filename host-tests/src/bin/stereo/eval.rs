@@ -9,7 +9,7 @@ use crate::frame::{Matched, matched};
 use crate::look::{Disparities, Look, SearchArgs, disparities, look};
 use crate::place::Place;
 use crate::results::depth_unit;
-use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print};
+use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print, remark};
 use clap::Args;
 use rival::Rival;
 use std::path::{Path, PathBuf};
@@ -56,6 +56,9 @@ pub struct EvalArgs {
     /// Results are depths, m, which this calibration makes disparities of
     #[arg(long, value_name = "FILE", requires = "found")]
     depths_by: Option<PathBuf>,
+    /// The truth holds depths, too
+    #[arg(long, requires = "depths_by")]
+    truth_depths: bool,
     /// Length of a step of a PNG of depths, m: 0.001 where none is given
     #[arg(long, value_name = "M", requires = "depths_by", value_parser = depth_unit,
         allow_negative_numbers = true)]
@@ -90,6 +93,9 @@ pub struct EvalArgs {
     #[arg(long, value_name = "FILE")]
     csv: Option<PathBuf>,
 }
+
+/// The share of wrong answers above which two files do not seem to be in one unit.
+const MOST_WRONG: f64 = 0.9;
 
 fn scale(text: &str) -> Result<f64, &'static str> {
     let value = text.parse().ok().filter(|value| (0.001..=65536.0).contains(value));
@@ -138,10 +144,11 @@ fn found_file(args: &EvalArgs) -> Result<DisparityFile, Failure> {
 
 /// A file beside a file.
 fn of_files(args: &EvalArgs, found: &Path, truth_path: &Path) -> Result<Evaluated, Failure> {
-    let of_truth = DisparityFile { scale: args.truth_scale, depths_of: None };
+    let file = found_file(args)?;
+    let of_disparities = DisparityFile { scale: args.truth_scale, depths_of: None };
+    let of_truth = if args.truth_depths { file } else { of_disparities };
     let truth = Truth::read(truth_path, &of_truth, args.mask.as_deref(), 0)?;
     let name = found.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    let file = found_file(args)?;
     compared(&file, name, found, args.confidence.as_deref(), &truth)
 }
 
@@ -154,6 +161,13 @@ fn of_folders(args: &EvalArgs, found: &Path, truth: &Path) -> Result<Vec<Evaluat
         let path = path.display();
         return Err(Failure::new(format!(
             "{option} {path}: is for a truth that is a file; folders have their own"
+        )));
+    }
+    if args.truth_depths {
+        return Err(Failure::new(format!(
+            "--truth-depths: is for a truth that is a file, and {} is a folder; those of folders are \
+             disparities",
+            truth.display()
         )));
     }
     let (file, scenes) = (found_file(args)?, Scene::all(truth)?);
@@ -176,6 +190,15 @@ fn compared(
     let sure = sure.map(|path| confidence(path, &truth.scored)).transpose()?;
     // A truth has scored pixels, else it is refused.
     let measures = Measures::of(&answers.values, truth, sure.as_deref()).unwrap_or_default();
+    if measures.score.density > 0.0 && measures.score.bad2 > MOST_WRONG {
+        remark(&format!(
+            "warning: {}: {:.0} % of the answers are over 2 px off: are both files in px? --depths-by is for \
+             results in metres, --truth-depths for a truth in metres, --found-scale and --truth-scale for \
+             other steps of a PNG",
+            found.display(),
+            100.0 * measures.score.bad2
+        ));
+    }
     Ok(Evaluated { scene, disparities: None, time_ms: None, measures })
 }
 

@@ -40,6 +40,13 @@ pub fn warnings(rig: &StereoRig<f64>, rectified: &Rectification<f64>) -> Vec<Str
         camera_warnings(name, camera, rig.sizes()[0], &mut warnings);
     }
     warnings.extend(baseline_warning(rig.baseline_m()));
+    if !rectified.axis().is_horizontal() {
+        warnings.push(
+            "the cameras stand one above the other: match takes them side by side; turn both cameras' images \
+             by 90 degrees and calibrate again"
+                .to_owned(),
+        );
+    }
     let angle = rig.pose().angle_rad().to_degrees();
     if angle > 10.0 {
         warnings.push(format!(

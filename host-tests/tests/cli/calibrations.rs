@@ -67,3 +67,21 @@ fn calibrations_that_do_not_go_together_are_refused() {
     let scaled = put("scaled.txt", &calibration(96, 48).replace("0 0 1]", "0 0 2]"));
     bench.refused(&with(&scaled, None), "cam0: its last row has to be 0 0 1");
 }
+
+#[test]
+fn cameras_one_above_the_other_are_told() {
+    let bench = Bench::new();
+    let camera =
+        |n: u32| format!("K{n}: [200., 0., 119.5, 0., 200., 89.5, 0., 0., 1.]\nD{n}: [0., 0., 0., 0., 0.]\n");
+    let told = |t: &str| {
+        let size = "image_width: 240\nimage_height: 180\n";
+        let rest = format!("R: [1., 0., 0., 0., 1., 0., 0., 0., 1.]\nT: [{t}]\n");
+        let path = bench.put("rig.yml", (size.to_owned() + &camera(1) + &camera(2) + &rest).as_bytes());
+        let run = stereo(["calib", "check", "--calib", &path.display().to_string()]);
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    assert!(told("-0.06, 0., 0.").contains("nothing looks wrong"));
+    let above = told("0., -0.06, 0.");
+    assert!(above.contains("warning: the cameras stand one above the other"), "{above}");
+}

@@ -44,9 +44,15 @@ pub fn solve(
     });
     let first = first.ok_or(SolveError::Camera("left"))?;
     let second = second.ok_or(SolveError::Camera("right"))?;
+    // With all that both together have: by less a camera would fit worse by itself.
+    let all = std::array::from_fn(|parameter| model.has(parameter));
     let rms = |camera: &Bundle<'_>| {
-        let corners: usize = camera.seen.iter().flatten().map(|seen| seen.corners.len()).sum();
-        (camera.cost() / corners as f64).sqrt()
+        let mut camera = Bundle { free: all, ..camera.clone() };
+        if camera.free != first.free {
+            camera.minimise(200);
+        }
+        let residuals = (0..views.len()).filter_map(|view| camera.residuals(0, view));
+        root(&residuals.flatten().collect::<Vec<_>>())
     };
     let alone_px = [rms(&first), rms(&second)];
 
@@ -60,7 +66,6 @@ pub fn solve(
         free: first.free,
     };
     let mut cost = both.minimise(200);
-    let all = std::array::from_fn(|parameter| model.has(parameter));
     if both.free != all {
         both.free = all;
         cost = both.minimise(200);
@@ -69,6 +74,11 @@ pub fn solve(
         return Err(SolveError::Camera("right"));
     }
     result(&both, square_m, size, alone_px).map_err(SolveError::Rig)
+}
+
+/// The root mean square of residuals, px.
+fn root(residuals: &[Vector2<f64>]) -> f64 {
+    (residuals.iter().map(Vector2::norm_squared).sum::<f64>() / residuals.len().max(1) as f64).sqrt()
 }
 
 fn result(
@@ -84,9 +94,6 @@ fn result(
     let cameras = [camera(&both.inner[0]), camera(&both.inner[1])];
     let [Ok(left), Ok(right)] = cameras else { return Err(StereoRigError::NoBaseline) };
     let rig = StereoRig::from_opencv([left, right], both.beside.r, both.beside.t * square_m, [size; 2])?;
-    let root = |residuals: &[Vector2<f64>]| {
-        (residuals.iter().map(Vector2::norm_squared).sum::<f64>() / residuals.len().max(1) as f64).sqrt()
-    };
     let middle = both.board.iter().fold(Vector3::zeros(), |sum, p| sum + p.coords) / both.board.len() as f64;
     let views = (0..both.views.len()).map(|view| {
         let residuals = [0, 1].map(|camera| both.residuals(camera, view).unwrap_or_default());

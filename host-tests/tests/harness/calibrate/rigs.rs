@@ -69,6 +69,8 @@ fn other_lenses_come_back_from_exact_corners() {
         let found = solve(model, pattern, SQUARE_M, SIZE, &views).expect("a rig");
         // Bounds on the rational model's coefficients cost a hundredth of a pixel.
         assert!(found.rms_px < 0.01, "{model:?}: {}", found.rms_px);
+        // A camera by itself has the same coefficients, and fits as well.
+        assert!(found.alone_px.iter().all(|&px| px < 0.01), "{model:?}: {:?}", found.alone_px);
         assert!(
             (found.rig.baseline_m() / rig().baseline_m() - 1.0).abs() < 1e-3,
             "{model:?}: {:?}",

@@ -5,7 +5,7 @@ use nalgebra::Vector2;
 use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
 use stereopsis_host::calibrate::board::{find, find_marked};
 use stereopsis_host::calibrate::scene::BoardCamera;
-use stereopsis_host::calibrate::{LensModel, SolveError, View, solve};
+use stereopsis_host::calibrate::{LensModel, SolveError, View, solve, solve_paired};
 use stereopsis_host::scene::Random;
 
 /// 25 mm.
@@ -110,6 +110,21 @@ fn a_view_that_fits_badly_is_named() {
     }
     let found = solve(LensModel::Brown, pattern(9, 6), SQUARE_M, SIZE, &views).expect("a rig");
     assert_eq!(found.outliers(), [4]);
+}
+
+/// Two pairs whose right pictures are exchanged spoil the fit so that good ones fit worst: those come back.
+#[test]
+fn only_what_does_not_belong_together_is_left_out() {
+    let views = views(0.1);
+    for (a, b) in [(1, 2), (3, 6), (0, 5)] {
+        let mut mixed = views.clone();
+        (mixed[a].corners[1], mixed[b].corners[1]) =
+            (views[b].corners[1].clone(), views[a].corners[1].clone());
+        let (found, kept) =
+            solve_paired(LensModel::Brown, pattern(9, 6), SQUARE_M, SIZE, &mixed).expect("a rig");
+        let others: Vec<_> = (0..views.len()).filter(|&view| view != a && view != b).collect();
+        assert!(kept == others && found.rms_px < 0.2, "{a} {b}: {kept:?} {}", found.rms_px);
+    }
 }
 
 #[test]

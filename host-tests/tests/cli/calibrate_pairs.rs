@@ -29,3 +29,20 @@ fn pairs_that_are_of_two_moments_are_left_out() {
         "too many pairs are not of one moment",
     );
 }
+
+#[test]
+fn images_of_one_camera_or_one_place_are_named() {
+    let bench = Bench::new();
+    pictures(&bench);
+    let file = |name: &str| bench.path(name).display().to_string();
+    let left = file("left?.png");
+    bench.refused(&arguments(&bench, &[("--right", &left)]), "both lists show the same camera");
+    for side in ["left", "right"] {
+        for n in 2..=6 {
+            std::fs::copy(file(&format!("{side}1.png")), file(&format!("{side}{n}.png"))).expect("room");
+        }
+    }
+    bench.refused(&arguments(&bench, &[]), "all 6 boards stand alike");
+    // Squares in place of corners.
+    bench.refused(&arguments(&bench, &[("--pattern", "7x6")]), "give --pattern 6x5");
+}

@@ -5,8 +5,8 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use stereopsis::camera::LineSource;
 use stereopsis::geometry::camera::ImageSize;
-use stereopsis_host::calibrate::View;
 use stereopsis_host::calibrate::board::{self, Board, BoardError, Markers, Pattern};
+use stereopsis_host::calibrate::{Calibrated, View};
 use stereopsis_host::mock::MockCamera;
 
 /// A pair in which the board was found in both images.
@@ -14,6 +14,11 @@ pub struct Found {
     pub paths: [PathBuf; 2],
     pub view: View,
 }
+
+/// Corners that are no farther apart are at the same place, px.
+const ALIKE_PX: f64 = 0.1;
+/// Images that are searched for a smaller board where none shows the one that is given.
+const TRIED: usize = 6;
 
 /// An image with its board.
 struct Seen {
@@ -41,6 +46,9 @@ pub fn boards(
     let size = counts.iter().max_by_key(|(count, _)| *count).map(|(_, size)| *size);
     let size = size.ok_or_else(|| Failure::new("--left and --right: no image has a partner"))?;
     refuse_other(pattern, all.iter().flat_map(|(_, left, right)| [&left.board, &right.board]))?;
+    if markers.is_none() && all.iter().all(|(_, left, right)| left.board.is_err() && right.board.is_err()) {
+        refuse_squares(pattern, all.iter().flat_map(|(paths, ..)| paths))?;
+    }
     let mut found = Vec::new();
     for (paths, left, right) in all {
         if let Some((path, seen)) = paths.iter().zip([&left, &right]).find(|(_, seen)| seen.size != size) {
@@ -60,7 +68,52 @@ pub fn boards(
             (_, Err(e)) => notes.push(format!("{}: {e}; the pair is left out", paths[1].display())),
         }
     }
+    refuse_alike(&found)?;
     Ok((size, found))
+}
+
+/// Refuses views that say nothing of two cameras, for the left and the right images are the same, or of a
+/// lens, for all boards stand alike.
+fn refuse_alike(found: &[Found]) -> Result<(), Failure> {
+    let far_px = |a: &View, [i, j]: [usize; 2], b: &View| {
+        let is_same = a.numbers[i] == b.numbers[j];
+        let both = a.corners[i].iter().zip(&b.corners[j]);
+        both.map(|(a, b)| (a - b).norm()).fold(if is_same { 0.0 } else { f64::INFINITY }, f64::max)
+    };
+    let Some(Found { view: first, .. }) = found.first() else { return Ok(()) };
+    if found.iter().all(|Found { view, .. }| far_px(view, [0, 1], view) < ALIKE_PX) {
+        return Err(Failure::new(
+            "--left and --right: both lists show the same camera: all corners are at the same places in \
+             both; give the images of the left camera and those of the right one",
+        ));
+    }
+    let is_alike = |view: &View| (0..2).all(|side| far_px(view, [side; 2], first) < ALIKE_PX);
+    if found.len() >= Calibrated::LEAST_VIEWS && found.iter().all(|found| is_alike(&found.view)) {
+        return Err(Failure::new(format!(
+            "--left and --right: all {} boards stand alike; turn and move the board from view to view",
+            found.len()
+        )));
+    }
+    Ok(())
+}
+
+/// Refuses a pattern that counts squares, where the first images show a board with that many, which has a
+/// corner less along and down.
+fn refuse_squares<'a>(pattern: Pattern, images: impl Iterator<Item = &'a PathBuf>) -> Result<(), Failure> {
+    let (columns, rows) = (pattern.columns() - 1, pattern.rows() - 1);
+    let Some(fewer) = Pattern::new(columns, rows) else { return Ok(()) };
+    for path in images.take(TRIED) {
+        if look(path, fewer, None, None)?.board.is_ok() {
+            return Err(Failure::new(format!(
+                "--pattern: {} x {} is given, and {} shows a board with {columns} x {rows} inner corners: \
+                 corners are counted, not squares; give --pattern {columns}x{rows}",
+                pattern.columns(),
+                pattern.rows(),
+                path.display()
+            )));
+        }
+    }
+    Ok(())
 }
 
 /// The boards of all pairs, in their order, by as many threads as there are processors.

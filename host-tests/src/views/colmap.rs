@@ -41,6 +41,12 @@ impl<'a> Model<'a> {
         Self { camera, size, names, poses, points, kept }
     }
 
+    /// How many points each view sees where they are; `None` of one that stands nowhere.
+    pub fn sights(&self) -> Vec<Option<usize>> {
+        let count = |view| self.kept.iter().filter(|(o, _)| usize::from(o.view) == view).count();
+        self.poses.iter().enumerate().map(|(view, pose)| pose.map(|_| count(view))).collect()
+    }
+
     /// The one camera, by the model of COLMAP's that has its lens.
     pub fn cameras(&self, out: &mut dyn Write) -> io::Result<()> {
         let (fx, fy) = self.camera.focal_px();

@@ -68,6 +68,9 @@ fn threshold(text: &str) -> Result<f64, &'static str> {
 /// Images at most: all pairs of them are tried as a beginning.
 const MOST: usize = 60;
 
+/// A view that has fewer sights than that part of what the middle one has may have been placed by chance.
+const FEW: usize = 10;
+
 /// What is written. Names are a contract with programs that read them.
 #[derive(Serialize)]
 struct Answer {
@@ -140,11 +143,27 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     for view in names(false) {
         remark(&format!("note: {} stands nowhere: {}", view.image, view.state));
     }
+    warn_of_few(&images.names, &model.sights());
     text += &format!("unit         {}\n", one_line(&unit));
     if answer.plane {
         remark("note: what it began with is on a plane");
     }
     print(&format!("{text}results are in {}\n", one_line(&args.out.display().to_string())))
+}
+
+/// Warns of views that see hardly any of the points: a few may agree by chance.
+fn warn_of_few(names: &[String], sights: &[Option<usize>]) {
+    let mut sorted: Vec<_> = sights.iter().flatten().copied().collect();
+    sorted.sort_unstable();
+    let Some(&middle) = sorted.get(sorted.len() / 2) else { return };
+    for (name, &count) in names.iter().zip(sights) {
+        if let Some(count) = count.filter(|count| FEW * count < middle) {
+            remark(&format!(
+                "warning: {name}: sees {count} points where they are, and the middle one of the views \
+                 {middle}: it may stand elsewhere; turn it as the others are, or leave it out"
+            ));
+        }
+    }
 }
 
 /// The structure of what its points look like in all views, where that places as many views as the first.

@@ -168,6 +168,11 @@ impl FocusResult {
         self.peaks.iter().map(|peak| peak.as_ref().map_or(f32::INFINITY, depth)).collect()
     }
 
+    /// How many pixels have an answer, or are sharper in some frames than noise tells, without a peak.
+    pub fn textured(&self) -> usize {
+        self.peaks.iter().filter(|peak| !matches!(peak, Err(NoFocus::Untextured))).count()
+    }
+
     /// How many pixels have an answer.
     pub fn answers(&self) -> usize {
         self.peaks.iter().flatten().count()

@@ -148,3 +148,15 @@ fn what_cannot_be_done_is_named() {
     }
     bench.refused(&good, "has 2 images");
 }
+
+#[test]
+fn frames_of_a_camera_that_moves_are_doubted() {
+    let bench = Bench::new();
+    let turn = bench.path("turn").display().to_string();
+    let run = stereo(["walk", "--scene", "turn", "--frames", "12", "--width", "200", "--out", &turn]);
+    assert!(run.status.success(), "{}", text(&run.stderr));
+    let (frames, out) = (format!("{turn}/left"), bench.path("out").display().to_string());
+    let run = stereo(["focus", "--force", "--frames", &frames, "--out", &out]);
+    let said = text(&run.stderr);
+    assert!(run.status.success() && said.contains("is it a focus stack?"), "{said}");
+}

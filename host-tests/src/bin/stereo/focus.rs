@@ -12,7 +12,7 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::focus::breathing::Agreement;
 use stereopsis_host::focus::order::{Look, Order, order};
 use stereopsis_host::focus::positions::read_positions;
-use stereopsis_host::focus::run::run as map;
+use stereopsis_host::focus::run::{FocusResult, run as map};
 use stereopsis_host::focus::stack::{Stack, StackError};
 use stereopsis_host::output::Staging;
 use stereopsis_host::pfm;
@@ -126,6 +126,7 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
              texture, each focused at another distance",
         );
     }
+    warn_of_doubt(&result);
     let share = 100.0 * result.answers() as f64 / result.peaks.len().max(1) as f64;
     let mut text =
         format!("{} frames of {width} x {height} pixels, {share:.1} % in focus in one of them\n", kept.len());
@@ -139,6 +140,25 @@ pub fn run(args: &FocusArgs) -> Result<(), Failure> {
     }
     let _ = writeln!(text, "results are in {}", one_line(&args.out.display().to_string()));
     print(&text)
+}
+
+/// The middle confidence below which frames are hardly a stack: stacks of real lenses have over half, frames
+/// of a camera that moves a quarter.
+const LEAST_CONFIDENCE: f32 = 0.35;
+
+/// Warns where few pixels have a peak, or their peaks are none to rely on.
+fn warn_of_doubt(result: &FocusResult) {
+    let mut sure: Vec<_> = result.confidence().into_iter().filter(|&sure| sure > 0.0).collect();
+    sure.sort_unstable_by(f32::total_cmp);
+    let Some(&middle) = sure.get(sure.len() / 2) else { return };
+    if 2 * result.answers() < result.textured() || middle < LEAST_CONFIDENCE {
+        remark(&format!(
+            "warning: {:.0} % of the pixels with texture are in focus in one of the frames, with a middle \
+             confidence of {middle:.2}: is it a focus stack? give frames of one scene from one place, each \
+             focused at another distance",
+            100.0 * result.answers() as f64 / result.textured().max(1) as f64
+        ));
+    }
 }
 
 /// The pixels with a depth in space, with the picture's colours: the centre of the view is the picture's.

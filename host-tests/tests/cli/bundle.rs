@@ -63,6 +63,8 @@ fn costs_are_reported_and_the_problem_is_refined() {
         let said = text(&stereo(again.into_iter().chain(out)).stdout);
         assert!(after(&said, "initial cost:") < 1e-12 * initial, "{said}");
     }
+    let run = stereo(arguments(&bench, &["--width", "2"]));
+    assert!(run.status.code() == Some(2) && text(&run.stderr).contains("--loss huber"), "{run:?}");
     let run = stereo(arguments(&bench, &["--iterations", "1", "--tolerance", "1e-12"]));
     assert!(text(&run.stdout).contains("the iterations are used up"), "{}", text(&run.stdout));
 }

@@ -45,4 +45,7 @@ fn images_of_one_camera_or_one_place_are_named() {
     bench.refused(&arguments(&bench, &[]), "all 6 boards stand alike");
     // Squares in place of corners.
     bench.refused(&arguments(&bench, &[("--pattern", "7x6")]), "give --pattern 6x5");
+    for name in ["stereo.xml", "stereo.json"] {
+        bench.refused(&arguments(&bench, &[("--out", &file(name))]), "the file is YAML");
+    }
 }

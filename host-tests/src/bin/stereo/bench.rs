@@ -12,7 +12,8 @@ pub const EXAMPLE: &str = "Example:
   stereo bench --left left.png --right right.png --disparities 64 --method fast --repeat 9
 
 Printed is one JSON object: frame_ms (a time for each frame, after one that is left out; files and start-up \
-                           left out, one thread), kernel, width, height, disparities, state_bytes, noise.";
+                           left out, in as many threads as --threads says), kernel, width, height, \
+                           disparities, state_bytes, noise.";
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {

@@ -32,10 +32,9 @@ pub struct BundleArgs {
     /// squares, or huber, to which what is far off counts by its distance
     #[arg(long, value_name = "LOSS", default_value = "squares")]
     pub loss: LossChoice,
-    /// Residual from which on huber counts by distance, px, 0.001 to 1000
-    #[arg(long, value_name = "PX", default_value_t = 1.0, value_parser = width, allow_negative_numbers =
-        true)]
-    pub width: f64,
+    /// Residual from which on huber counts by distance, px, 0.001 to 1000; 1 where none is given
+    #[arg(long, value_name = "PX", value_parser = width, allow_negative_numbers = true)]
+    pub width: Option<f64>,
     /// Iterations at most, 1 to 10000
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = iterations, allow_negative_numbers =
         true)]
@@ -52,6 +51,9 @@ pub enum LossChoice {
     Squares,
     Huber,
 }
+
+/// Huber's width where none is given, px.
+const WIDTH: f64 = 1.0;
 
 fn width(text: &str) -> Result<f64, &'static str> {
     within(text, 1e-3, 1e3).ok_or("a number from 0.001 to 1000 is needed")
@@ -70,12 +72,17 @@ fn iterations(text: &str) -> Result<u16, String> {
 }
 
 pub fn run(args: &BundleArgs) -> Result<(), Failure> {
+    if let (Some(width), LossChoice::Squares) = (args.width, args.loss) {
+        return Err(Failure::usage(format!(
+            "--width {width}: only --loss huber has a width; give both or neither"
+        )));
+    }
     let problem = read_problem(&args.problem)?;
     let place = Place::of("--out", &args.out)?;
     let config = BundleConfig {
         loss: match args.loss {
             LossChoice::Squares => Loss::Squares,
-            LossChoice::Huber => Loss::Huber(args.width),
+            LossChoice::Huber => Loss::Huber(args.width.unwrap_or(WIDTH)),
         },
         most_iterations: args.iterations.into(),
         cost_tolerance: args.tolerance,
@@ -115,7 +122,7 @@ fn summary(
             "initial loss: {}\nfinal loss: {}\nloss: half the sum of Huber's of width {} px\n",
             plain(report.initial_cost),
             plain(report.cost),
-            args.width
+            args.width.unwrap_or(WIDTH)
         ),
     };
     format!(

@@ -139,7 +139,7 @@ fn square(text: &str) -> Result<f64, &'static str> {
 
 pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     let markers = markers(args)?;
-    let place = Place::of("--out", &args.out)?;
+    let place = Place::of_yaml("--out", &args.out)?;
     if let Some(folder) = &args.report {
         Staging::probe(folder)?;
     }

@@ -39,6 +39,16 @@ impl Place {
         Ok(Self { folder, name })
     }
 
+    /// The place of YAML, refused where its name says that it is JSON or XML, in which OpenCV writes, too.
+    pub fn of_yaml(option: &str, path: &Path) -> Result<Self, Failure> {
+        let ending = path.extension().unwrap_or_default().to_ascii_lowercase();
+        if ending == "json" || ending == "xml" {
+            let path = path.display();
+            return Err(Failure::new(format!("{option} {path}: the file is YAML; give it a name in .yml")));
+        }
+        Self::of(option, path)
+    }
+
     /// The places of a result and of its picture, which is another file.
     pub fn with_picture(out: &Path, picture: Option<&Path>) -> Result<(Self, Option<Self>), Failure> {
         let place = Self::of("--out", out)?;

@@ -108,7 +108,7 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     let links = link(&plan, &images.grey, || progress.one_more())?;
     drop(progress);
     let length = args.baseline.map(|metres| Length { views: (0, 1), metres });
-    let failed = |why| Failure::new(format!("--images {}: {why}", args.images.join(" ")));
+    let failed = |why| Failure::new(format!("--images {}: {why}", given(&args.images)));
     let first = solve(&camera, count, &links, args.threshold, length).map_err(failed)?;
     let (links, found) = again(&camera, &images, links, first, (args.threshold, length));
     let beside = found.beside_first();
@@ -196,14 +196,19 @@ fn camera(args: &StructureArgs, images: &Images) -> Result<Camera<f64>, Failure>
     }
 }
 
+/// What was given, of many names the first.
+fn given(names: &[String]) -> String {
+    match names {
+        [first, _, ..] => format!("{first} and {} more", names.len() - 1),
+        _ => names.concat(),
+    }
+}
+
 fn images(args: &StructureArgs) -> Result<Images, Failure> {
     let paths = files("--images", &args.images)?;
     if !(2..=MOST).contains(&paths.len()) {
-        let given = args.images.join(" ");
-        return Err(Failure::new(format!(
-            "--images {given}: {} images; 2 to {MOST} are needed",
-            paths.len()
-        )));
+        let (given, count) = (given(&args.images), paths.len());
+        return Err(Failure::new(format!("--images {given}: {count} images; 2 to {MOST} are needed")));
     }
     let mut images = Images { names: Vec::new(), grey: Vec::new(), colours: Vec::new() };
     for path in &paths {

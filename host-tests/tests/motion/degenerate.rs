@@ -98,6 +98,23 @@ fn points_at_infinity_tell_the_turn_alone() {
 }
 
 #[test]
+fn what_is_far_tells_no_pair_that_it_stands() {
+    // A wall so far away that no point's depth is more than noise. A drive towards it moves its points
+    // outwards by up to a pixel a frame, which no turn explains, and neither does a step.
+    for (step_m, distance_m) in [(0.15, 40.0), (0.5, 60.0), (0.0, 40.0)] {
+        let path: Vec<_> = (0..16).map(|i| pose([0.0; 3], [0.0, 0.0, step_m * f64::from(i)])).collect();
+        let trajectory = stereo(rig(), &frames(wall(distance_m, 0.0), path));
+        for (i, (found, step)) in trajectory.poses.iter().zip(&trajectory.steps).enumerate().skip(1) {
+            assert_eq!(step.state, State::TranslationUnknown, "{step_m} m of {distance_m}: {i}");
+            assert!(!step.state.is_known() && found.translation().norm() == 0.0);
+            // Two pixels, over all frames.
+            let turned = turned_deg(found, &Pose::identity());
+            assert!(turned < 0.5, "{step_m} m of {distance_m}: {i}: {turned}");
+        }
+    }
+}
+
+#[test]
 fn a_plane_is_enough_for_a_pair_and_no_wrong_pose_of_one_camera() {
     let path: Vec<_> = (0..4)
         .map(|i| pose([0.0, 0.005 * f64::from(i), 0.0], [0.12 * f64::from(i), 0.0, 0.05 * f64::from(i)]))

@@ -77,22 +77,24 @@ pub(super) fn test_motion<T: Real>(
     // In units of the noise that there is.
     let scale = (all.squares / T::count(all.numbers.saturating_sub(6).max(1))).max(T::of(0.05));
     let gain = |other: &Solved<T>| (other.cost - all.cost) / scale;
-    let still = problem.solve(motion.reported_pose, Free::Nothing);
-    if gain(&still) < T::of(SIX) {
-        return MotionTest::Known(still, State::Stationary);
-    }
-    let was_lost = motion.was_lost();
-    let state = if was_lost { State::Found } else { State::Tracked };
-    let turn = Pose::of_parts(*all.pose.rotation(), *motion.reported_pose.translation());
-    let turned = problem.solve(turn, Free::Rotation);
     let deviation = step_deviation(&all);
     let unit = match rig.right {
         Some((baseline, _)) => baseline,
         // Of one camera the last step is as good a unit as any.
         None => motion.last_step * T::of(10.0),
     };
+    let is_known = deviation <= unit * T::of(UNKNOWN);
+    let still = problem.solve(motion.reported_pose, Free::Nothing);
+    // Points too far away have no slope by a step: with them alone any step costs as much as none.
+    if is_known && gain(&still) < T::of(SIX) {
+        return MotionTest::Known(still, State::Stationary);
+    }
+    let was_lost = motion.was_lost();
+    let state = if was_lost { State::Found } else { State::Tracked };
+    let turn = Pose::of_parts(*all.pose.rotation(), *motion.reported_pose.translation());
+    let turned = problem.solve(turn, Free::Rotation);
     let is_none = gain(&turned) < T::of(THREE);
-    if deviation > unit * T::of(OPEN) || (is_none && deviation > unit * T::of(UNKNOWN)) {
+    if !(deviation <= unit * T::of(OPEN)) || (is_none && !is_known) {
         return MotionTest::Known(turned, State::TranslationUnknown);
     }
     if is_none && rig.right.is_none() {

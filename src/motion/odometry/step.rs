@@ -23,13 +23,14 @@ pub enum State {
     /// The pose is measured by the left camera alone, with depths that the pair is no longer trusted for:
     /// what the right camera sees disagrees with all that was known.
     LeftOnly,
-    /// The pictures are the same to their noise: the motion is none.
+    /// The pictures are the same to their noise, and what they show is near enough to tell a step by: the
+    /// motion is none.
     Stationary,
     /// The rotation is measured. A step is too small to be measured: of one camera it has no direction. The
     /// motion has none.
     RotationOnly,
     /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it:
-    /// the step is not known, and the motion has none.
+    /// the step is not known, and the motion has none. So is a camera told that stands before what is far.
     TranslationUnknown,
     /// Too little was found again: the motion is not known, and is none. The next frame that is
     /// [`State::Found`] has the whole motion since.

@@ -10,7 +10,8 @@ use crate::camera::{CameraError, ErrorType, FrameStart, LineFormat, LineStart, P
 /// the same scene, so that corresponding 16-quantiles of their histograms correspond, where both are 8 to
 /// 248. The gain is the ratio of their mean deviations, 1/2 to 2, and the offset matches their means. Where
 /// the quantiles differ by less than [`Balance::LEAST`] in the mean (12 at most on 15 real pairs as taken),
-/// nothing is balanced. Saturated pixels stay saturated.
+/// nothing is balanced. A saturated pixel becomes as dark as the gain makes it: 128 at a gain of a half. Its
+/// saturation no longer shows, and has to be looked for before.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -49,6 +49,18 @@ pub struct RobustEssential<T: Real> {
 /// Bounded by [`RobustConfig::most_samples`], of some 70 000 operations each and ten candidates at most. The
 /// samples are solved in `f64`, also for `f32`.
 ///
+/// Two scenes have no answer of their own, and are not refused:
+///
+/// * A camera that has only turned: any direction of the baseline agrees, and the one found is chance.
+///   [`Essential::recover_pose`] then has hardly more than half of its voters in front.
+/// * One plane: a second motion may agree as well, and the answer is either of the two
+///   ([`Homography::motions`](crate::geometry::two_view::Homography::motions) has both).
+///
+/// In both a homography explains the inliers:
+/// [`choose`](crate::geometry::two_view::choose) of them is
+/// [`Planar`](crate::geometry::two_view::TwoViewModel::Planar), and
+/// [`robust_fundamental`](crate::geometry::robust::robust_fundamental) refuses them as a plane.
+///
 /// Like the errors of F, those of E ask for eight correspondences, so that more than a sample agrees.
 pub fn robust_essential<T: Real>(
     seen: &[Correspondence<T>],
@@ -132,7 +144,11 @@ const BINS: usize = 64;
 
 /// Three standard deviations of the noise of Sampson's distances, px: 1.4826 times their median is one, of
 /// what is within the threshold, to a sixty-fourth of that; the threshold at most, a tenth of it at least.
-fn three_deviations_px<T: Real>(f: &Fundamental<T>, seen: &[Correspondence<T>], threshold_px: T) -> T {
+pub(super) fn three_deviations_px<T: Real>(
+    f: &Fundamental<T>,
+    seen: &[Correspondence<T>],
+    threshold_px: T,
+) -> T {
     let (mut counts, mut all) = ([0_usize; BINS], 0);
     let per_px = T::count(BINS) / threshold_px;
     for s in seen {

@@ -92,6 +92,10 @@ impl<T: Real> Homography<T> {
 /// `sigma_px`, and chooses by [`gric`]. What the eight-point algorithm refuses as a plane is planar without a
 /// vote.
 ///
+/// Some fifty correspondences at least are needed: of few a fundamental matrix fits the noise of a plane, and
+/// the criterion, which takes parameters for known, calls it general. With the exact deviation it does so of
+/// one plane in four with 12 correspondences, of one in five with 20, and of none of 300 with 100.
+///
 /// The error is that of the eight-point algorithm, when there is no homography either.
 pub fn choose<T: Real>(seen: &[Correspondence<T>], sigma_px: T) -> Result<ModelChoice<T>, EightPointError> {
     let homography = Homography::from_correspondences(seen);

@@ -29,10 +29,17 @@ impl Depth {
 
     /// Fuses two depths by inverse variance: the estimate of least variance for independent errors. It is
     /// taken in `1 / Z`, where the errors of disparity and of focus are symmetric, with deviation `sigma_Z /
-    /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation is kept.
+    /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation is kept. Where a
+    /// variance is not finite the other depth is the answer; the first one where neither is, or both are 0.
     pub fn fused(self, other: Self) -> Self {
         let [a, b] = [self, other].map(|d| (1.0 / d.depth_m, d.sigma_m / (d.depth_m * d.depth_m)));
         let (variance_a, variance_b) = (a.1 * a.1, b.1 * b.1);
+        if !variance_a.is_finite() || !variance_b.is_finite() {
+            return if variance_b.is_finite() { other } else { self };
+        }
+        if variance_a + variance_b == 0.0 {
+            return self;
+        }
         let apart = a.0 - b.0;
         if apart * apart > Self::SAME_SURFACE * Self::SAME_SURFACE * (variance_a + variance_b) {
             return if a.1 <= b.1 { self } else { other };
@@ -60,5 +67,25 @@ pub fn fuse(first: &[Option<Depth>], second: &[Option<Depth>], out: &mut [Option
             (Some(first), Some(second)) => Some(first.fused(second)),
             (first, second) => first.or(second),
         };
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn depths_that_are_unknown_or_exact_are_fused_to_one_of_them() {
+        let of = |depth_m, sigma_m| Depth { depth_m, sigma_m };
+        let known = of(2.0, 0.1);
+        for sigma in [f32::INFINITY, f32::NAN, 1e30] {
+            let unknown = of(2.05, sigma);
+            assert_eq!((known.fused(unknown), unknown.fused(known)), (known, known), "{sigma}");
+        }
+        let unknown = [of(1.0, f32::INFINITY), of(2.0, f32::INFINITY)];
+        assert_eq!(unknown[0].fused(unknown[1]), unknown[0]);
+        let exact = [of(2.0, 0.0), of(3.0, 0.0)];
+        assert_eq!((exact[0].fused(exact[0]), exact[0].fused(exact[1])), (exact[0], exact[0]));
+        assert_eq!((exact[0].fused(of(2.1, 0.1)), of(2.1, 0.1).fused(exact[0])), (exact[0], exact[0]));
     }
 }

@@ -125,7 +125,8 @@ impl<'a> TemporalFilterView<'a> {
         self.average.fill(Disparity::NONE);
     }
 
-    /// Filters row `y` of a frame, for as many columns as all slices have.
+    /// Filters row `y` of a frame, for as many columns as all slices have. A row that the filter has no
+    /// memory for is without answers.
     pub fn row(
         &mut self,
         y: usize,
@@ -134,6 +135,11 @@ impl<'a> TemporalFilterView<'a> {
         provenance: &mut [Provenance],
     ) {
         let width = self.width.max(1);
+        if y >= self.average.len() / width {
+            let filtered = out.iter_mut().zip(provenance).zip(answers).take(self.width);
+            filtered.for_each(|((out, from), _)| (*out, *from) = (Disparity::NONE, Provenance::Nothing));
+            return;
+        }
         let average = self.average.chunks_exact_mut(width).nth(y).unwrap_or_default();
         let age = self.age.chunks_exact_mut(width).nth(y).unwrap_or_default();
         let state = average.iter_mut().zip(age);
@@ -180,6 +186,17 @@ impl TemporalConfig {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn rows_beyond_the_last_have_no_answers() {
+        let mut filter = TemporalFilter::<2, 1>::new(TemporalConfig::default());
+        let seven = [Disparity::from_raw(7); 2];
+        for y in [1, 2, usize::MAX] {
+            let (mut out, mut provenance) = (seven, [Provenance::Averaged; 2]);
+            filter.row(y, &seven, &mut out, &mut provenance);
+            assert_eq!((out, provenance), ([Disparity::NONE; 2], [Provenance::Nothing; 2]), "row {y}");
+        }
+    }
 
     #[test]
     fn answers_are_averaged_held_and_replaced() {

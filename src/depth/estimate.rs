@@ -29,8 +29,9 @@ impl Depth {
 
     /// Fuses two depths by inverse variance: the estimate of least variance for independent errors. It is
     /// taken in `1 / Z`, where the errors of disparity and of focus are symmetric, with deviation `sigma_Z /
-    /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation is kept. Where a
-    /// variance is not finite the other depth is the answer; the first one where neither is, or both are 0.
+    /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation of `1 / Z` is kept.
+    /// Where a variance is not finite the other depth is the answer; the first one where neither is, or both
+    /// are 0.
     pub fn fused(self, other: Self) -> Self {
         let [a, b] = [self, other].map(|d| (1.0 / d.depth_m, d.sigma_m / (d.depth_m * d.depth_m)));
         let (variance_a, variance_b) = (a.1 * a.1, b.1 * b.1);

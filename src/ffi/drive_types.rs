@@ -23,8 +23,8 @@ pub const STEREOPSIS_NO_CONTACT: u32 = 0xFFFF_FFFF;
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 #[repr(C)]
 pub struct CDriveConfig {
-    /// Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical
-    /// axis.
+    /// Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical axis
+    /// of the left camera: where the vehicle's middle is elsewhere, twice the distance of the two more.
     pub corridor_mm: u16,
     /// Distance from the camera at which the vehicle has to stand, mm.
     pub margin_mm: u16,

@@ -1851,8 +1851,8 @@ typedef struct stereopsis_scan {
  */
 typedef struct stereopsis_drive_config {
   /**
-   * Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical
-   * axis.
+   * Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical axis
+   * of the left camera: where the vehicle's middle is elsewhere, twice the distance of the two more.
    */
   uint16_t corridor_mm;
   /**

@@ -19,8 +19,8 @@ const NARROW_PX: u32 = 18;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct DriveConfig {
-    /// Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical
-    /// axis.
+    /// Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical axis
+    /// of the left camera: where the vehicle's middle is elsewhere, twice the distance of the two more.
     pub corridor_mm: u16,
     /// Distance from the camera at which the vehicle has to stand, mm.
     pub margin_mm: u16,

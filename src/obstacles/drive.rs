@@ -1,18 +1,16 @@
 //! From free space to a decision: go on, slow down, stop, or nothing is known.
 
-use super::column::{Column, MOST_GAP, StixelKind};
+use super::beside::{Beside, Sides};
+use super::column::StixelKind;
 use super::config::GroundSource;
 use super::finder::ObstaclesView;
-use super::ground::Ground;
 use super::held::{Held, Hysteresis};
-use super::interval::Interval;
-use super::setup::Setup;
+use super::hides::Needed;
 use super::watchdog::BlindReason;
-use crate::units::Disparity;
 
 /// Columns of pixels side by side, two matching windows, up to which a window sees more than one surface of a
 /// thing, so that its height is not known.
-const NARROW_PX: u32 = 18;
+pub(super) const NARROW_PX: u32 = 18;
 
 /// How a vehicle drives and brakes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -89,12 +87,14 @@ pub fn speed_mm_s(step_mm: u16, period_us: u32) -> u16 {
 pub struct DriveRule {
     config: DriveConfig,
     held: Held,
+    /// What left the picture at its left and at its right side.
+    beside: [Beside; 2],
 }
 
 impl DriveRule {
     /// Creates a rule without history.
     pub const fn new(config: DriveConfig) -> Self {
-        Self { config, held: Held::NOTHING }
+        Self { config, held: Held::NOTHING, beside: [Beside::NOTHING; 2] }
     }
 
     /// Way that a vehicle needs to stand: `margin + v t + v^2 / (2 a)`, mm.
@@ -107,10 +107,19 @@ impl DriveRule {
 
     /// Decides on a finished frame, at a speed.
     ///
-    /// In this order: blind by the watchdog; stop for what is within the stopping distance; blind where the
-    /// ground is not found, more than an eighth of the corridor's columns do not see it for twice the
-    /// stopping distance or up to an obstacle, or one of them sees something else before that and nothing
-    /// nearer is known; slow for what is within twice the stopping distance or the time to contact; clear.
+    /// In this order: blind by the watchdog; stop for what is within the stopping distance, and for what is
+    /// in the corridor and leaves the picture at a side; blind where the ground is not found, more than an
+    /// eighth of the corridor's columns, with those that it has beside the picture there, do not see it for
+    /// twice the stopping distance or up to an obstacle, or one of them sees something else before that and
+    /// nothing nearer is known; slow for what is within twice the stopping distance or the time to contact;
+    /// clear.
+    ///
+    /// A camera of `w` px and a focal length of `f` px sees a corridor of width `c` from `c f / w` on, and
+    /// its left side, which both cameras have to see, from `(c + 2 b) f / w` on. Nearer than that a
+    /// thing at the corridor's edge is beside the picture, and no frame can show that it is gone. So the
+    /// decision is `Stop` where such a thing is about to leave the picture, and stays so at the distance at
+    /// which it was seen last, until a frame shows it again. A vehicle that has turned away from it, or gone
+    /// past it, begins with a new rule.
     pub fn decide(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Verdict {
         let stopping_mm = self.stopping_mm(speed_mm_s);
         let needed = stopping_mm.saturating_mul(2);
@@ -121,8 +130,10 @@ impl DriveRule {
             return verdict(Decision::Blind(reason), None);
         }
         let nearest = self.held.update(corridor.nearest, self.config.hysteresis);
+        let leaving = self.leaving(frame, speed_mm_s);
+        let nearest = [nearest, leaving].into_iter().flatten().min();
         let contact_ms = nearest.and_then(|mm| (u32::from(mm) * 1000).checked_div(u32::from(speed_mm_s)));
-        if let Some(mm) = nearest.filter(|&mm| mm <= stopping_mm) {
+        if let Some(mm) = nearest.filter(|&mm| mm <= stopping_mm || leaving.is_some()) {
             return verdict(Decision::Stop(mm), contact_ms);
         }
         let searched = frame.setup().is_some_and(|s| s.config.ground != GroundSource::Absent);
@@ -143,6 +154,24 @@ impl DriveRule {
             },
         }
     }
+
+    /// Takes what a frame shows at the picture's sides, and returns the nearest that left there or is about
+    /// to.
+    fn leaving(&mut self, frame: &ObstaclesView<'_>, speed_mm_s: u16) -> Option<u16> {
+        let setup = frame.setup()?;
+        // A picture later is no later than the brakes.
+        let way = u32::from(speed_mm_s) * u32::from(self.config.reaction_ms) / 1000;
+        let sides = Sides {
+            setup: &setup,
+            columns: frame.columns.get(..setup.columns)?,
+            half_mm: i64::from(self.config.corridor_mm) / 2,
+            way_mm: way.min(u16::MAX.into()) as u16,
+        };
+        for (is_right, beside) in [false, true].into_iter().zip(&mut self.beside) {
+            beside.update(sides.shown(is_right), self.held.frames(), self.config.hysteresis);
+        }
+        self.beside.iter().filter_map(Beside::mm).min()
+    }
 }
 
 /// What a frame shows of a corridor.
@@ -151,7 +180,8 @@ struct Corridor {
     kind: StixelKind,
     /// Depth of the nearest surface less two deviations, mm.
     nearest: Option<u16>,
-    /// Columns that the corridor reaches over at the needed depth, at least one where there is any.
+    /// Columns that the corridor reaches over at the needed depth, at least one where there is any, and as
+    /// many more as it would beside the picture.
     columns: usize,
     /// Those of them that see the ground neither for the needed depth nor up to an obstacle.
     unseen: usize,
@@ -191,6 +221,8 @@ impl Corridor {
             *nearest = Some(nearest.map_or(hides.to_mm, |mm| mm.min(hides.to_mm)));
         }
         found.end(&mut low);
+        let beside = setup.columns_beside(half.into(), needed_mm);
+        (found.columns, found.unseen) = (found.columns + beside, found.unseen + beside);
         found
     }
 
@@ -209,84 +241,4 @@ struct Low {
     columns_px: u32,
     /// Depth of the nearest of what is lower than an obstacle, mm.
     nearest: Option<u16>,
-}
-
-/// What ends a column's sight of the ground without being a surface.
-#[derive(Clone, Copy)]
-struct Hides {
-    /// Depths between which it stands, mm.
-    from_mm: u16,
-    to_mm: u16,
-    /// Whether it is lower than an obstacle, as is all behind it.
-    is_low: bool,
-}
-
-impl Hides {
-    /// What is beyond all that is needed.
-    const BEYOND: Self = Self { from_mm: u16::MAX, to_mm: u16::MAX, is_low: true };
-}
-
-/// Parallaxes of what is as far as has to be seen.
-#[derive(Clone, Copy)]
-struct Needed {
-    parallax: i32,
-    /// That of the ground that an obstacle there hides.
-    ground: i32,
-}
-
-impl Needed {
-    fn new(setup: &Setup, ground: Option<&Ground>, needed_mm: u16) -> Self {
-        let parallax = setup.millimetre_steps.checked_div(needed_mm.into()).unwrap_or(u32::MAX);
-        let parallax = parallax.min(i32::MAX as u32) as i32;
-        let hidden =
-            ground.map_or(0, |ground| setup.above_obstacle(parallax.clamp(0, 0xffff) as u16, ground));
-        Self { parallax, ground: hidden.into() }
-    }
-}
-
-impl ObstaclesView<'_> {
-    /// What ends the sight of the ground in column `x`, if that are answers of neither the ground nor a
-    /// surface. It stands where it is as high as an obstacle and hides the ground, or further.
-    fn hides(
-        &self,
-        setup: &Setup,
-        x: usize,
-        column: &Column,
-        ground: &Ground,
-        needed: &Needed,
-    ) -> Option<Hides> {
-        let answer = |row: usize| {
-            let d = self.cells.get(row * setup.columns + x).filter(|d| d.is_some())?;
-            Some((row, i32::from(d.raw()) + setup.offset_steps))
-        };
-        let above = (0..usize::from(column.seen)).rev().take(usize::from(MOST_GAP) + 1);
-        let (row, parallax) = above.into_iter().find_map(answer)?;
-        let is_of_it =
-            column.kind == StixelKind::Drop || parallax <= column.parallax + i32::from(Disparity::ONE);
-        if column.is_supported() && column.is_seen_up_to() && is_of_it {
-            return None;
-        }
-        let cells = setup.cells(self.cells);
-        let right = cells.right_16ths(x);
-        let ground_at = |row: usize| ground.parallax(cells.halves(row), right);
-        // Near the horizon an answer may be the sky's.
-        let at = ground_at(row);
-        let own = if at >= 2 * cells.farthest { parallax } else { at };
-        if at <= needed.ground && own <= needed.parallax {
-            return Some(Hides::BEYOND);
-        }
-        let (mut is_low, mut gap) = (true, 0);
-        let beside = ground.beside_256ths(right);
-        for row in (0..=row).rev().take_while(|&row| ground_at(row) > needed.ground) {
-            let bins = self.bins.as_chunks().0.get(row);
-            let between = bins.map(|bins| Interval::load(bins).at(beside, cells.farthest));
-            let lies = |p: i32| between.is_some_and(|between| (between.low..=between.high).contains(&p));
-            let answer = answer(row);
-            gap = if answer.is_some() { 0 } else { gap + 1 };
-            is_low &= gap <= MOST_GAP && answer.is_none_or(|(_, p)| lies(p));
-        }
-        let (own_mm, ground_mm) = (setup.depth_mm(own), setup.depth_mm(at));
-        let from_mm = own_mm.min(setup.above_obstacle(ground_mm, ground));
-        Some(Hides { from_mm, to_mm: own_mm.min(ground_mm), is_low })
-    }
 }

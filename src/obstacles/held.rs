@@ -33,6 +33,11 @@ pub(super) struct Held {
 impl Held {
     pub(super) const NOTHING: Self = Self { value: None, seen: 0, missing: 0 };
 
+    /// Frames in a row, up to the last one, that show something.
+    pub(super) fn frames(&self) -> u8 {
+        self.seen
+    }
+
     /// Takes what a frame shows and returns what counts.
     pub(super) fn update(&mut self, shown: Option<u16>, rule: Hysteresis) -> Option<u16> {
         if shown.is_some() {

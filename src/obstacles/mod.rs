@@ -18,6 +18,7 @@
 //! as often as asked:
 //!   sector scan  columns -> sectors by bearing -> a laser scan
 //!   held         sectors over frames, with hysteresis
+//!   beside       what left the picture at its sides
 //!   drive        the corridor ahead -> clear, slow, stop or blind
 //! ```
 //!
@@ -67,6 +68,8 @@ mod rows;
 mod sector;
 mod scan;
 mod held;
+mod beside;
+mod hides;
 mod drive;
 
 pub use column::{Column, StixelKind};

@@ -7,6 +7,7 @@ mod faults;
 mod geometry;
 mod given;
 mod scenes;
+mod sides;
 mod support;
 mod tally;
 mod truth;

@@ -1,5 +1,6 @@
 //! A decision from all columns of a corridor.
 
+use super::beside::{Beside, Side};
 use super::stixels::Column;
 use super::{Found, Kind, Line, Scene, counts};
 use stereopsis::obstacles::{BlindReason, Decision, DriveConfig, GroundSource, StixelKind};
@@ -22,6 +23,7 @@ pub struct Decided {
 pub struct Driver {
     config: DriveConfig,
     shown: Vec<Option<i128>>,
+    beside: [Beside; 2],
 }
 
 /// A surface in the corridor.
@@ -43,7 +45,7 @@ struct Hides {
 impl Driver {
     /// A vehicle that has seen nothing yet.
     pub fn new(config: DriveConfig) -> Self {
-        Self { config, shown: Vec::new() }
+        Self { config, shown: Vec::new(), beside: [Beside::default(); 2] }
     }
 
     /// What a frame means at a speed, mm/s.
@@ -65,13 +67,15 @@ impl Driver {
             return Decided { decision: Decision::Blind(reason), nearest, contact_ms: None, stopping_mm };
         }
         self.shown.push(ahead.map(|ahead| ahead.surely_mm));
+        let leaving = self.leaving(scene, found, speed);
         let held = counts(&self.shown, self.config.hysteresis);
+        let held = [held, leaving].into_iter().flatten().min();
         let contact_ms = held.filter(|_| speed > 0).map(|mm| 1000 * mm / speed);
         let soon = contact_ms.is_some_and(|ms| ms <= i128::from(self.config.slow_ms));
         let is_lost = scene.config.ground != GroundSource::Absent && found.ground.is_none();
         let slow = |mm: Option<i128>| mm.filter(|&mm| mm <= corridor.needed_mm);
         let whole = |mm: i128| mm as u16;
-        let decision = if let Some(mm) = held.filter(|&mm| mm <= stopping_mm) {
+        let decision = if let Some(mm) = held.filter(|&mm| mm <= stopping_mm || leaving.is_some()) {
             Decision::Stop(whole(mm))
         } else if is_lost {
             Decision::Blind(BlindReason::NoGround)
@@ -86,6 +90,18 @@ impl Driver {
             Decision::Clear
         };
         Decided { decision, nearest, contact_ms, stopping_mm }
+    }
+
+    /// The nearest that left the picture at a side, or is about to.
+    fn leaving(&mut self, scene: &Scene<'_>, found: &Found, speed: i128) -> Option<i128> {
+        let in_a_row = self.shown.iter().rev().take_while(|at| at.is_some()).count().min(255);
+        for (is_right, beside) in [false, true].into_iter().zip(&mut self.beside) {
+            let way_mm = (speed * i128::from(self.config.reaction_ms) / 1000).min(65_535);
+            let half_mm = i128::from(self.config.corridor_mm / 2);
+            let side = Side { scene, found, is_right, half_mm, way_mm };
+            beside.take(&side, in_a_row, self.config.hysteresis);
+        }
+        self.beside.iter().filter_map(Beside::mm).min()
     }
 }
 
@@ -145,8 +161,24 @@ impl Corridor<'_> {
             let is_near = standing.found.is_some() && self.depth_mm(x) <= self.needed_mm;
             sees_ground || is_near || self.ends_at_surface(x) || self.hides(x).is_some()
         };
-        let unseen = inside.iter().filter(|&&x| !sees(x)).count();
-        !inside.is_empty() && 8 * unseen <= inside.len()
+        let beside = self.beside();
+        let unseen = inside.iter().filter(|&&x| !sees(x)).count() + beside;
+        let columns = inside.len() + beside;
+        columns > 0 && 8 * unseen <= columns
+    }
+
+    /// How many columns the corridor would have beside the picture; more than eight times those of the
+    /// picture are not counted.
+    fn beside(&self) -> usize {
+        let (scene, most) = (self.scene, 10 * self.columns() as i128);
+        if self.needed_mm == 0 {
+            return 0;
+        }
+        let width = 16 * i128::from(scene.config.cell_width);
+        let is_inside = |right: i128| (self.needed_mm * right / scene.focal_16ths).abs() <= self.half_mm;
+        let left = (1..most).take_while(|k| is_inside((scene.right(0) - k * width).min(0)));
+        let last = scene.right(self.columns() - 1);
+        left.count() + (1..most).take_while(|k| is_inside((last + k * width).max(0))).count()
     }
 
     /// Depth of the nearest in the corridor that is neither ground nor a surface, mm: what is lower than an

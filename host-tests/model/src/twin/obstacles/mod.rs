@@ -5,9 +5,10 @@
 //! * `ground`: the line of the ground by counting cells and by least squares. `carried`: the same over
 //!   frames. `stixels`: the cheapest labels of a column by trying all predecessors. `surfaces`: those of
 //!   columns by flooding. `sectors`: the nearest of each by looking at all columns.
-//! * `watchdog`: whether a frame is to be trusted. `held`: what counts of all frames so far. `drive`: a
-//!   decision from all columns of a corridor.
+//! * `watchdog`: whether a frame is to be trusted. `held`: what counts of all frames so far. `beside`: what
+//!   left the picture at its sides. `drive`: a decision from all columns of a corridor.
 
+mod beside;
 mod carried;
 mod drive;
 mod ground;

@@ -41,6 +41,8 @@ pub fn mt9v034_start() -> Vec<Transaction> {
         w(0x04, 752),
         w(0x03, 480),
         w(0x05, 61),
+        // As many blank rows as after a reset, which a frame time set before may have changed.
+        w(0x06, 45),
         // Free-running: as the register is after a reset.
         w(0x07, 0x0388),
     ]
@@ -124,6 +126,24 @@ fn a_mt9v034s_times_are_those_of_its_data_sheet() {
     assert!(least <= 31 && (49_800..sensor.frame_time_us()).contains(&most), "{least} {most}");
     sensor.set_exposure(10_000, 32).expect("the bus takes it");
     sensor.set_exposure(0, 16).expect("the bus takes it");
+    bus.done();
+    pin.done();
+}
+
+#[test]
+fn a_mt9v034_that_is_set_up_again_has_its_own_frame_time() {
+    let mut expected = mt9v034_start();
+    expected.push(w(0x06, 2791));
+    expected.extend(mt9v034_start());
+    let pins = [State::Low, State::High, State::Low, State::High].map(PinTransaction::set);
+    let (mut bus, mut pin) = (Mock::new(&expected), PinMock::new(&pins));
+    let mut sensor = Mt9v034::new(bus.clone(), AT, CLOCK_HZ);
+    sensor.initialise(&mut pin, &mut NoopDelay::new()).expect("the bus takes it");
+    let first_us = sensor.frame_time_us();
+    sensor.set_frame_time(100_000).expect("the bus takes it");
+    assert!(sensor.frame_time_us() > 99_000);
+    sensor.initialise(&mut pin, &mut NoopDelay::new()).expect("the bus takes it");
+    assert_eq!(sensor.frame_time_us(), first_us);
     bus.done();
     pin.done();
 }

@@ -41,6 +41,8 @@ const READ: u16 = 0x0300;
 const RECOMMENDED: [(u8, u16); 5] =
     [(0x13, 0x2d2e), (0x20, 0x03c7), (0x24, 0x001b), (0x2b, 0x0003), (0x2f, 0x0003)];
 const LEAST_ROW_CLOCKS: u16 = 704;
+/// Vertical blanking after a reset, rows.
+const RESET_BLANKING: u16 = 45;
 
 /// The driver over a blocking or an asynchronous bus: with `async` and `.await`, or nothing in their places.
 macro_rules! driver {
@@ -65,7 +67,7 @@ macro_rules! driver {
         /// Creates a driver without touching the bus. `clock_hz` is the master clock, typically 26.6 MHz.
         pub const fn new(bus: I, address: u8, clock_hz: u32) -> Self {
             let window = Mt9v034Window::WHOLE;
-            Self { bus, address, clock_hz, window, row_clocks: 752 + 94, vertical_blanking: 45 }
+            Self { bus, address, clock_hz, window, row_clocks: 752 + 94, vertical_blanking: RESET_BLANKING }
         }
 
         /// Resets the sensor by its active-low pin RESET_BAR and by register, checks its identity, and
@@ -90,6 +92,8 @@ macro_rules! driver {
             self.write(AEC_AGC_ENABLE, 0)$($wait)*?;
             self.write(PIXEL_OPERATION_MODE, 0)$($wait)*?;
             self.set_window(Mt9v034Window::WHOLE)$($wait)*?;
+            self.write(VERTICAL_BLANKING, RESET_BLANKING)$($wait)*?;
+            self.vertical_blanking = RESET_BLANKING;
             self.set_mode(Mt9v034Mode::Master)$($wait)*
         }
 

@@ -14,9 +14,12 @@ fn hr(register: u16, value: u8) -> Transaction {
     Transaction::write_read(0x24, register.to_be_bytes().to_vec(), vec![value])
 }
 
-/// A size's registers: how columns and rows are read, the window, the lines of a frame, and that they count.
+/// A size's registers: how columns and rows are read, the window, the lines of a frame, an exposure within
+/// them, and that they count.
 fn size(readout: u8, binning: u8, window: u8, lines: u16) -> Vec<Transaction> {
     let [high, low] = lines.to_be_bytes();
+    // A start asks for what its 260 lines have room for.
+    let [exposure_high, exposure_low] = (lines - 2).min(258).to_be_bytes();
     let registers = [
         (0x0383, readout),
         (0x0387, readout),
@@ -24,6 +27,8 @@ fn size(readout: u8, binning: u8, window: u8, lines: u16) -> Vec<Transaction> {
         (0x3010, window),
         (0x0340, high),
         (0x0341, low),
+        (0x0202, exposure_high),
+        (0x0203, exposure_low),
         (0x0104, 1),
     ];
     registers.map(|(register, value)| hw(register, value)).to_vec()
@@ -84,6 +89,8 @@ pub fn hm01b0_session() -> Vec<Transaction> {
         // 100 ms are 797 lines of 376 clocks at 3 MHz.
         hw(0x0340, 0x03),
         hw(0x0341, 0x1d),
+        hw(0x0202, 1),
+        hw(0x0203, 2),
         hw(0x0104, 1),
         // 20 ms are 159 lines; gains are 1, 2, 4, 8.
         hw(0x0202, 0),
@@ -123,16 +130,17 @@ fn a_hm01b0s_exposure_stays_within_its_frame() {
     );
     let group = [hw(0x0104, 1)];
     let with =
-        |size: Vec<Transaction>, lines: u16| [&size[..size.len() - 1], &exposure(lines), &group].concat();
+        |size: Vec<Transaction>, lines: u16| [&size[..size.len() - 3], &exposure(lines), &group].concat();
     let mut expected = hm01b0_start();
     // 100 ms, of which 90 ms are 718 lines.
-    expected.extend([&lines(797)[..], &group, &exposure(718), &[hw(0x0205, 0)], &group].concat());
+    expected
+        .extend([&lines(797)[..], &exposure(258), &group, &exposure(718), &[hw(0x0205, 0)], &group].concat());
     // 50 ms are 398 lines, and 60 ms are 478; a small picture has 132.
     expected.extend([&lines(398)[..], &exposure(396), &group].concat());
     expected.extend([&lines(478)[..], &exposure(476), &group].concat());
     expected.extend(with(size(3, 3, 1, 132), 130));
     expected.extend([&lines(797)[..], &exposure(718), &group].concat());
-    // A reset leaves the exposure to the chip.
+    // A start has the longest exposure of its frames, whatever was before.
     expected.extend(hm01b0_start());
     let mut bus = Mock::new(&expected);
     let mut sensor = Hm01b0::new(bus.clone(), 3_000_000);

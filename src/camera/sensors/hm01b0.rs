@@ -99,7 +99,7 @@ macro_rules! driver {
         /// Clock in which lines are counted, Hz.
         clock_hz: u32,
         frame_lines: u16,
-        /// Lines of the exposure that was asked for; 0 before the first one, which leaves it to the chip.
+        /// Lines of the exposure that was asked for; 0 before a start, which leaves it to the chip.
         exposure_lines: u16,
         size: Hm01b0Size,
     }
@@ -117,7 +117,8 @@ macro_rules! driver {
             Self { bus, clock_hz, frame_lines: size.least_lines(), exposure_lines: 0, size }
         }
 
-        /// Resets the sensor, checks its identity, and sets it up in standby without automatic exposure.
+        /// Resets the sensor, checks its identity, and sets it up in standby without automatic exposure, with
+        /// the longest exposure that its frames have lines for.
         pub $($async)? fn initialise<D: $delay>(&mut self, delay: &mut D) -> Outcome<I> {
             self.write(SOFTWARE_RESET, 1)$($wait)*?;
             self.exposure_lines = 0;
@@ -139,6 +140,8 @@ macro_rules! driver {
             }
             self.write(AUTO_EXPOSURE, 0)$($wait)*?;
             self.write_pair(LINE_CLOCKS, CLOCKS_A_LINE)$($wait)*?;
+            // The chip's own exposure is longer than a frame has lines for.
+            self.exposure_lines = Hm01b0Size::Qvga.least_lines().saturating_sub(2);
             self.set_size(Hm01b0Size::Qvga)$($wait)*
         }
 

@@ -22,7 +22,8 @@ pub enum LensCommand {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum LensEvent {
     /// The lens rests, at this position as far as is known: the one that was asked for where the hardware
-    /// does not report its own.
+    /// does not report its own. A lens that is off by less than half of a step, one of
+    /// [`Autofocus::STEPS`] of its range, has arrived; one that is farther off is sent again.
     Arrived(u16),
     /// The command to move could not be given: the bus failed.
     MoveFailed,
@@ -146,7 +147,9 @@ impl Autofocus {
             (LensCommand::Focused(_) | LensCommand::Failed(_), _) => {}
             (LensCommand::Move(position), LensEvent::Arrived(at)) => {
                 self.at = at;
-                if at == position {
+                if at.abs_diff(position) <= self.most_off() {
+                    // So near to where it was to be, it is there: the search tells no such places apart.
+                    self.at = position;
                     self.failures = 0;
                     self.travel();
                 } else {
@@ -165,6 +168,12 @@ impl Autofocus {
             _ => self.asked = LensCommand::Failed(AutofocusError::Unexpected),
         }
         self.asked
+    }
+
+    /// How far from where it was to be the lens may say that it is: less than half of the search's finest
+    /// step.
+    fn most_off(&self) -> u16 {
+        (self.limits.most.saturating_sub(self.limits.least) / Self::STEPS).saturating_sub(1) / 2
     }
 
     /// Gives the last command again, or gives up.

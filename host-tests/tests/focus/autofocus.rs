@@ -160,7 +160,7 @@ fn failures_are_tried_again_three_times() {
                 (LensCommand::Move(_), true) if at % 2 == 0 => LensEvent::MoveFailed,
                 // Steps were lost: the lens is elsewhere, and says so.
                 (LensCommand::Move(position), true) => {
-                    at = position.saturating_add(7).min(1023);
+                    at = position.saturating_add(9).min(1023);
                     if at == position { LensEvent::MoveFailed } else { LensEvent::Arrived(at) }
                 }
                 (LensCommand::Move(position), false) => {
@@ -189,6 +189,34 @@ fn failures_are_tried_again_three_times() {
     assert_eq!(command, LensCommand::Measure);
     let failed = LensCommand::Failed(AutofocusError::Unexpected);
     assert_eq!([focus.event(LensEvent::Arrived(3)), focus.event(LensEvent::Sharpness(3))], [failed; 2]);
+}
+
+#[test]
+fn a_lens_that_says_that_it_is_a_little_off_has_arrived() {
+    // A step of the search is 15 positions of 1023, and one of 100.
+    for (most, off, works) in [(1023, 1, true), (1023, 7, true), (1023, 8, false), (100, 1, false)] {
+        for sign in [-1_i32, 1] {
+            let limits = ActuatorLimits { least: 0, most, backlash: 0 };
+            let (mut focus, mut command) = Autofocus::new(limits, 300, most / 2);
+            let mut at = i32::from(most / 2);
+            let ends = loop {
+                let event = match command {
+                    LensCommand::Move(position) => {
+                        at = (i32::from(position) + sign * off).clamp(0, most.into());
+                        LensEvent::Arrived(at as u16)
+                    }
+                    LensCommand::Measure => LensEvent::Sharpness(peak(at as u16)),
+                    LensCommand::Focused(focused) => break Ok(focused.position),
+                    LensCommand::Failed(error) => break Err(error),
+                };
+                command = focus.event(event);
+            };
+            match ends {
+                Ok(position) => assert!(works && position.abs_diff(700) <= 23, "{off}: {position}"),
+                Err(error) => assert_eq!((works, error), (false, AutofocusError::Hardware), "{off}"),
+            }
+        }
+    }
 }
 
 #[test]

@@ -120,9 +120,17 @@ impl FocusCalibration {
         super::lens::finite(ratio * ratio * self.per_step_m * sigma)
     }
 
-    /// The position that is nearest to having `object_m` in focus; the nearest end where it is out of reach.
+    /// The position that is nearest to having `object_m` in focus; the nearest end where it is out of reach:
+    /// the far one's for infinity, the near one's for what is within the focal length. Only what is no number
+    /// is refused.
     pub fn position(&self, object_m: f32) -> Result<u16, LensError> {
-        let extension = self.lens.magnification(object_m)? * self.lens.focal();
+        let extension = if object_m == f32::INFINITY {
+            0.0
+        } else if object_m <= self.lens.focal() {
+            f32::INFINITY
+        } else {
+            self.lens.magnification(object_m)? * self.lens.focal()
+        };
         // A cast of what is out of range is the nearest end.
         Ok(crate::math::round((extension - self.zero_m) / self.per_step_m) as u16)
     }

@@ -244,7 +244,11 @@ fn calibrations_are_lines() {
         assert!((sigma / slope - 1.0).abs() < 0.02, "{position}: {sigma} {slope}");
     }
     assert_eq!(line.position(1e6), Ok(0));
-    assert_eq!(line.position(0.004), Err(LensError::ObjectWithinFocus));
+    assert_eq!(line.position(f32::INFINITY), Ok(0));
+    for near in [0.00401, 0.004, 0.001, 0.0, -1.0, f32::NEG_INFINITY] {
+        assert_eq!(line.position(near), Ok(u16::MAX), "{near} m");
+    }
+    assert!(line.position(f32::NAN).is_err());
     assert_eq!(FocusCalibration::fit(lens, &samples[..1]), Err(FocusCalibrationError::TooFew));
     assert_eq!(FocusCalibration::fit(lens, &[samples[3], samples[3]]), Err(FocusCalibrationError::TooFew));
     assert_eq!(FocusCalibration::fit(lens, &[(0, 0.1), (100, 0.5)]), Err(FocusCalibrationError::Direction));

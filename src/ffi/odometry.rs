@@ -164,12 +164,6 @@ pub unsafe fn odometry_start(
         checked(config)?;
         // SAFETY: the caller's promise, they are aligned, and any bits are numbers.
         let (rig, config) = unsafe { (OdometryRig::stereo(&rig_at(rig)?)?, config.read()) };
-        if [config.far_px, config.near_px, config.sigma_px, config.spacing_px]
-            .iter()
-            .any(|x| x.is_nan() || *x < 0.0)
-        {
-            return Err(Status::OdometryConfig);
-        }
         // SAFETY: the caller's promise.
         unsafe { State::<Odometry>::open(handle)?.content.view(handle) }?.start(rig, config.into())?;
         Ok(Status::Ok)

@@ -38,17 +38,17 @@ pub const STEREOPSIS_MOTION_LEFT_ONLY: u8 = 9;
 pub struct COdometryConfig {
     /// Seed of the random samples: equal seeds give equal motions.
     pub seed: u64,
-    /// Radius of the search around a predicted place while the motion is not known, px.
+    /// Radius of the search around a predicted place while the motion is not known, px; over 0.
     pub far_px: f32,
-    /// Radius of the search while the motion is known, px.
+    /// Radius of the search while the motion is known, px; over 0.
     pub near_px: f32,
-    /// Standard deviation of a place found by template alignment, px.
+    /// Standard deviation of a place found by template alignment, px; 0.001 to 1000.
     pub sigma_px: f32,
-    /// Smallest distance of a new point from all others, px.
+    /// Smallest distance of a new point from all others, px; finite.
     pub spacing_px: f32,
-    /// Largest number of RANSAC samples for a frame, which bounds its time.
+    /// Largest number of RANSAC samples for a frame, which bounds its time; over 0.
     pub most_samples: u32,
-    /// Largest disparity of a new point, px.
+    /// Largest disparity of a new point, px; over 0.
     pub most_disparity_px: u16,
 }
 
@@ -92,6 +92,7 @@ impl From<OdometryError> for Status {
             OdometryError::NoRight => Self::Null,
             OdometryError::Size => Self::PictureSize,
             OdometryError::Memory { .. } => Self::OdometryPoints,
+            OdometryError::Config => Self::OdometryConfig,
         }
     }
 }

@@ -172,7 +172,7 @@ pub enum Status {
     FocusNotFinished = -72,
     /// Odometry: it follows 16 to 65534 points.
     OdometryPoints = -73,
-    /// Odometry: a length of the configuration is negative or not a number.
+    /// Odometry: a number of the configuration is none that frames can be followed with.
     OdometryConfig = -74,
     /// Odometry: the pictures differ in size, or from those of the frames before.
     PictureSize = -75,

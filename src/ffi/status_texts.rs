@@ -86,7 +86,7 @@ const TEXTS: [(Status, &CStr); 93] = [
     (Status::FocusScale, c"the scale is 1/2 to 2"),
     (Status::FocusNotFinished, c"the stack is not finished"),
     (Status::OdometryPoints, c"16 to 65534 points are followed"),
-    (Status::OdometryConfig, c"a length is negative or no number"),
+    (Status::OdometryConfig, c"no frame can be followed with such a number"),
     (Status::PictureSize, c"the pictures differ in size"),
     (Status::Winners, c"a row of winners is as long as a line, and given where one is due"),
     (Status::WinnerDamaged, c"a winner's check byte does not fit, or it is of another row"),

@@ -827,7 +827,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_ODOMETRY_POINTS = -73,
   /**
-   * Odometry: a length of the configuration is negative or not a number.
+   * Odometry: a number of the configuration is none that frames can be followed with.
    */
   STEREOPSIS_STATUS_ODOMETRY_CONFIG = -74,
   /**
@@ -1532,27 +1532,27 @@ typedef struct stereopsis_odometry_config {
    */
   uint64_t seed;
   /**
-   * Radius of the search around a predicted place while the motion is not known, px.
+   * Radius of the search around a predicted place while the motion is not known, px; over 0.
    */
   float far_px;
   /**
-   * Radius of the search while the motion is known, px.
+   * Radius of the search while the motion is known, px; over 0.
    */
   float near_px;
   /**
-   * Standard deviation of a place found by template alignment, px.
+   * Standard deviation of a place found by template alignment, px; 0.001 to 1000.
    */
   float sigma_px;
   /**
-   * Smallest distance of a new point from all others, px.
+   * Smallest distance of a new point from all others, px; finite.
    */
   float spacing_px;
   /**
-   * Largest number of RANSAC samples for a frame, which bounds its time.
+   * Largest number of RANSAC samples for a frame, which bounds its time; over 0.
    */
   uint32_t most_samples;
   /**
-   * Largest disparity of a new point, px.
+   * Largest disparity of a new point, px; over 0.
    */
   uint16_t most_disparity_px;
 } stereopsis_odometry_config;

@@ -142,6 +142,12 @@ static void odometries(void) {
     EXPECT(stereopsis_odometry_start(h, &rig, &wrong), ODOMETRY_CONFIG);
     wrong = config, wrong.sigma_px = zero / zero;
     EXPECT(stereopsis_odometry_start(h, &rig, &wrong), ODOMETRY_CONFIG);
+    wrong = config, wrong.sigma_px = zero;
+    EXPECT(stereopsis_odometry_start(h, &rig, &wrong), ODOMETRY_CONFIG);
+    wrong = config, wrong.most_samples = 0;
+    EXPECT(stereopsis_odometry_start(h, &rig, &wrong), ODOMETRY_CONFIG);
+    wrong = config, wrong.spacing_px = 1.0f / zero;
+    EXPECT(stereopsis_odometry_start(h, &rig, &wrong), ODOMETRY_CONFIG);
     EXPECT(stereopsis_odometry_start(h, &rig, &config), OK);
     EXPECT(stereopsis_odometry_step(NULL, &left, &right, features, MOST, &step), NULL);
     EXPECT(stereopsis_odometry_step(h, NULL, &right, features, MOST, &step), NULL);

@@ -9,8 +9,8 @@ use stereopsis::geometry::camera::{Camera, Pose};
 use stereopsis::geometry::two_view::Correspondence;
 use stereopsis::imaging::Picture;
 use stereopsis::motion::odometry::{
-    Frame, OdometryConfig, OdometryError, OdometryRig, OdometryState, OdometryView, PointMatch, State,
-    StereoOdometry, Track,
+    Frame, OdometryConfig, OdometryError, OdometryRig, OdometryRigError, OdometryState, OdometryView,
+    PointMatch, State, StereoOdometry, Track,
 };
 
 #[test]
@@ -187,6 +187,45 @@ fn frames_that_do_not_fit_are_refused_by_name() {
         Some(OdometryError::Size)
     );
     assert_eq!(odometry.step(&frame).map(|step| step.state), Ok(State::Lost));
+}
+
+#[test]
+fn configurations_that_can_never_work_are_refused() {
+    let refused = |change: fn(&mut OdometryConfig)| {
+        let mut config = OdometryConfig::new(64);
+        change(&mut config);
+        let mut odometry = StereoOdometry::<f32, 16>::new();
+        let whole = odometry.start(&rig(), config).err();
+        let stereo = OdometryRig::stereo(&rig()).expect("a rig");
+        let view = odometry.as_mut_view().start(stereo, config).err();
+        assert_eq!(whole, view.map(|_| OdometryRigError::Config));
+        assert!(view.is_none_or(|error| error == OdometryError::Config), "{view:?}");
+        view.is_some()
+    };
+    let wrong: [fn(&mut OdometryConfig); 15] = [
+        |c| c.sigma_px = 0.0,
+        |c| c.sigma_px = 1e-20,
+        |c| c.sigma_px = f32::INFINITY,
+        |c| c.sigma_px = f32::NAN,
+        |c| c.sigma_px = -0.3,
+        |c| (c.far_px, c.near_px) = (0.0, 0.0),
+        |c| c.far_px = 0.0,
+        |c| c.near_px = 0.0,
+        |c| c.near_px = -1.0,
+        |c| c.far_px = f32::NAN,
+        |c| c.most_disparity_px = 0,
+        |c| c.spacing_px = f32::INFINITY,
+        |c| c.spacing_px = f32::NAN,
+        |c| c.spacing_px = -7.0,
+        |c| c.most_samples = 0,
+    ];
+    for (i, change) in wrong.into_iter().enumerate() {
+        assert!(refused(change), "change {i}");
+    }
+    let usable: [fn(&mut OdometryConfig); 3] = [|_| (), |c| c.spacing_px = 0.0, |c| c.far_px = f32::INFINITY];
+    for change in usable {
+        assert!(!refused(change));
+    }
 }
 
 #[test]

@@ -24,10 +24,13 @@ pub struct OdometryRig<T: Real> {
 pub enum OdometryRigError {
     /// The rig's numbers are no camera.
     Camera,
+    /// The configuration can never work, see [`OdometryConfig::is_usable`].
+    Config,
 }
 
 error_text!(OdometryRigError {
-    _ => "the rig's numbers are no camera",
+    Self::Camera => "the rig's numbers are no camera",
+    Self::Config => "no frame can be followed with this configuration",
 });
 
 impl<T: Real> OdometryRig<T> {
@@ -101,6 +104,19 @@ impl OdometryConfig {
         seed: 0,
         corrects_rig: false,
     };
+
+    /// Whether frames can be followed with it: radii of the search over 0, a deviation of 0.001 to 1000 px, a
+    /// distance of points that is finite and not below 0, a sample at least, and for a pair a disparity over
+    /// 0. With another one no motion is ever known.
+    pub fn is_usable(&self, is_pair: bool) -> bool {
+        self.far_px > 0.0
+            && self.near_px > 0.0
+            && (0.001..=1000.0).contains(&self.sigma_px)
+            && self.spacing_px.is_finite()
+            && self.spacing_px >= 0.0
+            && self.most_samples > 0
+            && (!is_pair || self.most_disparity_px > 0)
+    }
 
     /// For pictures of so many columns: a sixth of them as far as motion goes that is not known, a twentieth
     /// where it is, a quarter as the largest disparity, 0.3 px of noise, 7 px from point to point, 300

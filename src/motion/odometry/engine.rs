@@ -150,9 +150,10 @@ impl<'a, T: Real> OdometryView<'a, T> {
         if is_enough { Ok(()) } else { Err(OdometryError::Memory { needed }) }
     }
 
-    /// Begins with a rig: what was known is forgotten.
+    /// Begins with a rig: what was known is forgotten. A configuration that can never work is refused.
     pub fn start(&mut self, rig: OdometryRig<T>, config: OdometryConfig) -> Result<(), OdometryError> {
         self.check(&rig)?;
+        config.is_usable(rig.right.is_some()).then_some(()).ok_or(OdometryError::Config)?;
         self.begin(rig, config);
         Ok(())
     }

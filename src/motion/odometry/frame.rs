@@ -49,6 +49,8 @@ pub enum OdometryError {
         /// The length that would be right.
         needed: usize,
     },
+    /// The configuration can never work, see [`OdometryConfig::is_usable`](super::OdometryConfig::is_usable).
+    Config,
 }
 
 error_text!(OdometryError {
@@ -56,4 +58,5 @@ error_text!(OdometryError {
     Self::NoRight => "the rig is a pair and the frame has no right picture",
     Self::Size => "the pictures differ in size",
     Self::Memory { needed } => "a part of the memory must hold {needed} items",
+    Self::Config => "no frame can be followed with this configuration",
 });

@@ -62,7 +62,11 @@ impl<T: Real, const N: usize> StereoOdometry<T, N> {
 
     /// Begins with a rig: what was known is forgotten.
     pub fn start(&mut self, rig: &RectifiedRig, config: OdometryConfig) -> Result<(), OdometryRigError> {
-        self.as_mut_view().begin(OdometryRig::stereo(rig)?, config);
+        let rig = OdometryRig::stereo(rig)?;
+        if !config.is_usable(true) {
+            return Err(OdometryRigError::Config);
+        }
+        self.as_mut_view().begin(rig, config);
         Ok(())
     }
 
@@ -106,7 +110,8 @@ impl<T: Real, const N: usize> MonocularOdometry<T, N> {
         self.memory.view(self.correspondences.as_flattened_mut())
     }
 
-    /// Begins with a camera: what was known is forgotten.
+    /// Begins with a camera: what was known is forgotten. With a configuration that is none to be used
+    /// ([`OdometryConfig::is_usable`]) no motion is ever known.
     pub fn start(&mut self, camera: Camera<T>, config: OdometryConfig) {
         self.as_mut_view().begin(OdometryRig::one(camera), config);
     }

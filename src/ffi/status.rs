@@ -29,21 +29,21 @@ pub enum Status {
     Null = -1,
     /// A pointer is not aligned as what it points to has to be.
     Misaligned = -2,
-    /// The memory is shorter than `stereopsis_size()`, or than `stereopsis_rectifier_size()`.
+    /// The memory is shorter than what the function makes in it, as the header says.
     MemoryTooShort = -3,
-    /// The memory holds a matcher already: `stereopsis_deinit` gives it up.
+    /// The memory holds what this function makes already: its `_deinit` gives it up.
     AlreadyInitialised = -4,
-    /// The handle's memory holds no such matcher or rectifier of this library.
+    /// The handle's memory holds no such thing of this library.
     NotInitialised = -5,
-    /// An argument points into the matcher's or rectifier's memory, or two results overlap.
+    /// An argument points into the handle's memory, or two results overlap.
     Overlap = -6,
     /// More elements than an address space holds.
     TooMany = -7,
-    /// `stereopsis_start`, or `stereopsis_rectifier_start`, has to come first.
+    /// The handle's start has to come first.
     NotStarted = -8,
-    /// `stereopsis_begin_frame`, or `stereopsis_rectifier_begin_frame`, has to come first.
+    /// The beginning of the handle's frame has to come first.
     NotBegun = -9,
-    /// The length is not the width that the matcher or rectifier was started for.
+    /// The length is not the width that the handle was started for.
     LineLength = -10,
     /// All lines of the frame are in: flush, or begin the next one.
     NoLineLeft = -11,
@@ -57,7 +57,7 @@ pub enum Status {
     Height = -15,
     /// Configuration: the disparities are under 16 or over `stereopsis_max_disparities()`.
     Disparities = -16,
-    /// Configuration: the search ends beyond 2046 px.
+    /// Configuration: the search must end at 2046 px at most.
     MinDisparity = -17,
     /// Configuration: the left-right check is neither 0 to 255 px nor `STEREOPSIS_NOT_CHECKED`.
     LeftRight = -18,

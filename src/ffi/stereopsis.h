@@ -542,19 +542,19 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_MISALIGNED = -2,
   /**
-   * The memory is shorter than `stereopsis_size()`, or than `stereopsis_rectifier_size()`.
+   * The memory is shorter than what the function makes in it, as the header says.
    */
   STEREOPSIS_STATUS_MEMORY_TOO_SHORT = -3,
   /**
-   * The memory holds a matcher already: `stereopsis_deinit` gives it up.
+   * The memory holds what this function makes already: its `_deinit` gives it up.
    */
   STEREOPSIS_STATUS_ALREADY_INITIALISED = -4,
   /**
-   * The handle's memory holds no such matcher or rectifier of this library.
+   * The handle's memory holds no such thing of this library.
    */
   STEREOPSIS_STATUS_NOT_INITIALISED = -5,
   /**
-   * An argument points into the matcher's or rectifier's memory, or two results overlap.
+   * An argument points into the handle's memory, or two results overlap.
    */
   STEREOPSIS_STATUS_OVERLAP = -6,
   /**
@@ -562,15 +562,15 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_TOO_MANY = -7,
   /**
-   * `stereopsis_start`, or `stereopsis_rectifier_start`, has to come first.
+   * The handle's start has to come first.
    */
   STEREOPSIS_STATUS_NOT_STARTED = -8,
   /**
-   * `stereopsis_begin_frame`, or `stereopsis_rectifier_begin_frame`, has to come first.
+   * The beginning of the handle's frame has to come first.
    */
   STEREOPSIS_STATUS_NOT_BEGUN = -9,
   /**
-   * The length is not the width that the matcher or rectifier was started for.
+   * The length is not the width that the handle was started for.
    */
   STEREOPSIS_STATUS_LINE_LENGTH = -10,
   /**
@@ -598,7 +598,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_DISPARITIES = -16,
   /**
-   * Configuration: the search ends beyond 2046 px.
+   * Configuration: the search must end at 2046 px at most.
    */
   STEREOPSIS_STATUS_MIN_DISPARITY = -17,
   /**

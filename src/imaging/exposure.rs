@@ -152,6 +152,10 @@ impl AutoExposure {
     fn split(&self, light: u64) -> ExposureCommand {
         let limits = &self.limits;
         let most_gain = u64::from(limits.most_gain_16ths);
+        // More light than is asked for may be nearer than less. It is taken if it ends well within the dead
+        // band: only beyond the band is it left again, so that noise makes no swing.
+        let most = light * u64::from(Self::TARGET + Self::DEAD_BAND / 2) / u64::from(Self::TARGET);
+        let is_nearer = |less: u64, more: u64| more <= most && less + more < 2 * light;
         let (exposure_us, gain) = match limits.gain_steps {
             GainSteps::Sixteenths => {
                 let exposure_us = limits.whole_us(light / 16);
@@ -160,16 +164,23 @@ impl AutoExposure {
             GainSteps::Doublings => {
                 let least_gain = light.div_ceil(u64::from(limits.most_us.max(1)));
                 let gain = least_gain.clamp(16, most_gain).next_power_of_two();
-                (limits.whole_us(light / gain.max(16)), gain)
+                let exposure_us = limits.whole_us(light / gain.max(16));
+                // The shortest exposure with this gain may be more than the longest one with half of it and
+                // than what is asked for: what it saturates would be left and come back again and again.
+                let less = u64::from(limits.most_us) * (gain / 2);
+                let more = u64::from(exposure_us) * gain;
+                if gain > 16 && more > light && !is_nearer(less, more) {
+                    (limits.most_us, gain / 2)
+                } else {
+                    (exposure_us, gain)
+                }
             }
         };
-        // Where no gain makes up what whole steps leave, one step more may be nearer. It is taken if it ends
-        // well within the dead band: only beyond the band is it left again, so that noise makes no swing.
+        // Where no gain makes up what whole steps leave, one step more may be nearer.
         let is_short = gain == most_gain || limits.gain_steps == GainSteps::Doublings;
         let longer_us = limits.whole_us(u64::from(exposure_us) + u64::from(limits.exposure_step_us.max(1)));
         let (shorter, longer) = (u64::from(exposure_us) * gain, u64::from(longer_us) * gain);
-        let most = light * u64::from(Self::TARGET + Self::DEAD_BAND / 2) / u64::from(Self::TARGET);
-        let takes_longer = is_short && longer <= most && shorter + longer < 2 * light;
+        let takes_longer = is_short && is_nearer(shorter, longer);
         let exposure_us = if takes_longer { longer_us } else { exposure_us };
         ExposureCommand { exposure_us, gain_16ths: gain as u16 }
     }
@@ -375,5 +386,45 @@ mod tests {
             }
             assert_eq!(changes[1], 0, "{times}: it swings");
         }
+    }
+
+    /// Longest exposures that are less than twice the shortest.
+    const NARROW: ExposureLimits = ExposureLimits {
+        least_us: 180,
+        most_us: 319,
+        most_gain_16ths: 212,
+        gain_steps: GainSteps::Doublings,
+        ..LIMITS
+    };
+
+    #[test]
+    fn a_gap_between_two_doublings_is_no_way_up() {
+        let auto = AutoExposure::new(NARROW);
+        for light in (16 * 180)..(128 * 319) {
+            let command = auto.split(light);
+            let set = u64::from(command.exposure_us) * u64::from(command.gain_16ths);
+            assert!(100 * set <= 106 * light, "{light}: {command:?}");
+            assert!((180..=319).contains(&command.exposure_us), "{light}: {command:?}");
+            // No more is left than what the gap is wide: 2 * 180 beside 319.
+            assert!(set * 360 + 360 * 128 >= light * 319, "{light}: {command:?}");
+        }
+    }
+
+    #[test]
+    fn a_lamp_beside_the_dark_comes_to_rest_between_two_doublings() {
+        let mut auto = AutoExposure::new(NARROW);
+        let mut settings = [auto.current(); 3];
+        let mut last = 0;
+        for frame in 0..200 {
+            let light = f64::from(settings[0].exposure_us) * f64::from(settings[0].gain_16ths) / 16.0;
+            let grey = |share: f64| (share * light).min(255.0) as u8;
+            let seen = |gain: f64| {
+                of(&[(grey(0.0197 * gain), 39), (grey(0.715 * gain), 28), (grey(0.0234 * gain), 11)])
+            };
+            let changed = auto.frame([&seen(1.0), &seen(0.91)]).is_some();
+            settings = [settings[1], settings[2], auto.current()];
+            last = if changed { frame } else { last };
+        }
+        assert!(last < 50, "it still changes in frame {last}");
     }
 }

@@ -87,7 +87,8 @@ pub enum SolveError {
     /// The two pictures of too many views are not of one moment.
     #[error(
         "each camera by itself fits {alone_px:.2} px, and both together {together_px:.1} px: the images of \
-         too many pairs are not of one moment; are both lists in the same order, without gaps?"
+         too many pairs are not of one moment, or one camera's are upside down or mirrored; are both lists \
+         in the same order, without gaps?"
     )]
     NotPaired {
         /// The re-projection error of the worse camera by itself, px.

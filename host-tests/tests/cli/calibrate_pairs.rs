@@ -49,3 +49,20 @@ fn images_of_one_camera_or_one_place_are_named() {
         bench.refused(&arguments(&bench, &[("--out", &file(name))]), "the file is YAML");
     }
 }
+
+#[test]
+fn a_camera_that_is_upside_down_or_mirrored_is_thought_of() {
+    let bench = Bench::new();
+    pictures(&bench);
+    let change = |change: &dyn Fn(&image::GrayImage) -> image::GrayImage| {
+        for n in 1..=6 {
+            let path = bench.path(&format!("right{n}.png"));
+            let picture = image::open(&path).expect("a picture").into_luma8();
+            change(&picture).save(path).expect("room");
+        }
+    };
+    change(&image::imageops::rotate180);
+    bench.refused(&arguments(&bench, &[]), "upside down");
+    change(&image::imageops::flip_vertical);
+    bench.refused(&arguments(&bench, &[]), "mirrored");
+}

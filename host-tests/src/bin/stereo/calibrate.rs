@@ -11,7 +11,7 @@ use clap::{Args, ValueEnum};
 use image::RgbImage;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::rectify::{Crop, Rectification};
+use stereopsis::geometry::rectify::{Crop, Rectification, RectifyError};
 use stereopsis_host::calibrate::board::{Dictionary, Markers, Pattern};
 use stereopsis_host::calibrate::coverage::{self, Coverage, coverage};
 use stereopsis_host::calibrate::{Calibrated, LensModel, View, report, solve_paired};
@@ -154,7 +154,9 @@ pub fn run(args: &CalibrateArgs) -> Result<(), Failure> {
     };
     let (result, kept) = solve_paired(args.lens.into(), args.pattern, args.square_mm / 1000.0, size, &all)
         .map_err(|e| failed(&e))?;
-    let rectified = Rectification::new(&result.rig, Crop::Natural, size).map_err(|e| failed(&e))?;
+    let hint = |e| if e == RectifyError::Apart { "; is one of them upside down?" } else { "" };
+    let rectified = Rectification::new(&result.rig, Crop::Natural, size)
+        .map_err(|e| failed(&format!("{e}{}", hint(e))))?;
     let wrong = warnings(&result.rig, &rectified);
     let (found, left_out): (Vec<_>, Vec<_>) =
         found.into_iter().enumerate().partition(|(place, _)| kept.contains(place));

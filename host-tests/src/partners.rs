@@ -1,7 +1,6 @@
 //! Which images of two cameras belong together, by their names.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 /// The last number in a file's name.
@@ -23,22 +22,20 @@ pub fn numbered(paths: &[PathBuf]) -> Option<BTreeMap<u64, PathBuf>> {
 /// one is on both sides, else by the last numbers in them, where all have one. `None` too where names do not
 /// say which belong together.
 pub fn alone<'a>(left: &'a [PathBuf], right: &'a [PathBuf]) -> Option<(&'a Path, bool)> {
-    fn stem(path: &PathBuf) -> Option<&OsStr> {
-        path.file_stem()
-    }
-    let numbers = |path: &PathBuf| number(path);
     let are_numbered =
         [left, right].iter().all(|side| numbered(side).is_some_and(|all| all.len() == side.len()));
-    without(left, right, stem).or_else(|| without(left, right, numbers).filter(|_| are_numbered)).flatten()
+    let by_name = without(left, right, Path::file_stem);
+    by_name.or_else(|| without(left, right, number).filter(|_| are_numbered)).flatten()
 }
 
 /// The first image whose key the other side has not; `None` outside where no key is on both sides.
 fn without<'a, K: Ord>(
     left: &'a [PathBuf],
     right: &'a [PathBuf],
-    key: impl Fn(&'a PathBuf) -> Option<K>,
+    key: impl Fn(&'a Path) -> Option<K>,
 ) -> Option<Option<(&'a Path, bool)>> {
-    let [of_left, of_right] = [left, right].map(|side| side.iter().filter_map(&key).collect::<BTreeSet<_>>());
+    let [of_left, of_right] =
+        [left, right].map(|side| side.iter().filter_map(|path| key(path)).collect::<BTreeSet<_>>());
     if of_left.is_disjoint(&of_right) {
         return None;
     }

@@ -51,11 +51,9 @@ pub(crate) fn as_a_whole<T>(work: impl FnOnce() -> T) -> T {
 }
 
 /// From now on an interruption (Ctrl-C, or a request to end) removes what is not finished, and ends the
-/// program with status 130. Where somebody decides already what Ctrl-C or the end of a terminal does, as a
-/// shell does of what runs behind it, or `nohup`, that stays; a request to end is always followed.
+/// program with status 130. Where somebody decides already what one does, as `nohup` does, that stays.
 pub fn remove_when_interrupted() {
-    let decided = decided::Decided::take();
-    let _ = ctrlc::set_handler(|| {
+    let _ = ctrlc::try_set_handler(|| {
         // Held to the end: nothing more gets its place.
         let all = all();
         // The newest first: its folder may stand in one that was made before.
@@ -74,49 +72,4 @@ pub fn remove_when_interrupted() {
         }
         process::exit(INTERRUPTED);
     });
-    decided.put_back();
-}
-
-/// What was decided of signals before the program began.
-#[cfg(unix)]
-#[expect(unsafe_code, reason = "what a signal does is set by a call that can run any code")]
-mod decided {
-    use nix::sys::signal::{SaFlags, SigAction, SigHandler, SigSet, Signal, sigaction};
-
-    /// What Ctrl-C and the end of a terminal do, where that is not what they do of themselves.
-    pub struct Decided(Vec<(Signal, SigAction)>);
-
-    impl Decided {
-        /// What was decided. The signals are ignored from now on, until something else is said.
-        pub fn take() -> Self {
-            let ignored = SigAction::new(SigHandler::SigIgn, SaFlags::empty(), SigSet::empty());
-            let old = [Signal::SIGINT, Signal::SIGHUP].into_iter().filter_map(|signal| {
-                // SAFETY: a signal that is ignored runs no code.
-                Some((signal, unsafe { sigaction(signal, &ignored) }.ok()?))
-            });
-            Self(old.filter(|(_, old)| !matches!(old.handler(), SigHandler::SigDfl)).collect())
-        }
-
-        /// Puts it back.
-        pub fn put_back(self) {
-            for (signal, old) in self.0 {
-                // SAFETY: this is what the signal did before.
-                let _ = unsafe { sigaction(signal, &old) };
-            }
-        }
-    }
-}
-
-/// Nobody decides of signals there.
-#[cfg(not(unix))]
-mod decided {
-    pub struct Decided;
-
-    impl Decided {
-        pub fn take() -> Self {
-            Self
-        }
-
-        pub fn put_back(self) {}
-    }
 }

@@ -110,10 +110,10 @@ fn what_an_interrupted_run_left_goes_and_what_is_being_written_stays() {
 fn an_interrupted_run_leaves_nothing() {
     let bench = Bench::new();
     let before = bench.everything();
-    let begin = |ignored: Option<&str>| {
+    let walk = || {
         // Whoever runs the tests may ignore signals, and the program goes on to.
         let mut walk = Command::new("env");
-        walk.arg("--default-signal=INT,TERM,HUP").args(ignored).arg(program().get_program());
+        walk.arg("--default-signal=INT,TERM,HUP").arg(program().get_program());
         walk.args(["walk", "--frames", "2000", "--out"]).arg(bench.path("new/walk"));
         walk.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("it starts")
     };
@@ -128,15 +128,8 @@ fn an_interrupted_run_leaves_nothing() {
         assert!(before == bench.everything(), "{signal} left something behind");
         run
     };
-    let walk = || begin(None);
-    // A shell's script ignores Ctrl-C for what runs behind it; a request to end is followed all the same.
-    for (signal, ignored) in [
-        ("-INT", None),
-        ("-TERM", None),
-        ("-TERM", Some("--ignore-signal=INT,HUP")),
-        ("-INT", Some("--ignore-signal=HUP")),
-    ] {
-        let walk = begin(ignored);
+    for signal in ["-INT", "-TERM"] {
+        let walk = walk();
         let left = bench.path("new/walk/left");
         // Until a frame is being written, or for a minute.
         for _ in 0..600 {

@@ -25,8 +25,7 @@ pub struct RobustConfig<T: Real> {
     /// more than the noise of right ones, three to six deviations: what is nearer gets more weight, the
     /// noise itself need not be known.
     pub threshold_px: T,
-    /// The probability with which a better estimate may be missed, between zero and one: by samples, and with
-    /// F by pairs off a plane that most of what agrees is on, each by itself.
+    /// The probability with which a better estimate may be missed, between zero and one.
     pub miss_probability: T,
     /// Samples at most, however bad the best estimate is then; at least one.
     pub most_samples: u32,

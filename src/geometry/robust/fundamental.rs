@@ -61,12 +61,6 @@ pub struct RobustFundamental<T: Real> {
     /// The probability that an estimate as good was missed: `(1 - w^7)^k` for k samples and the share w of
     /// correspondences that have a weight, which are those within one and a half thresholds, not
     /// the inliers alone. More than was asked when the samples ran out.
-    ///
-    /// It is that of a scene in depth. Where most of the correspondences are on one plane, most samples that
-    /// are all right lie on it and do not count. Two that are off the plane complete it then, and pairs are
-    /// drawn until one that agrees is missed with the probability that was asked for, what the noise of a
-    /// pair makes of the epipole apart. Of 200 matches, 30 % of them wrong, about one estimate in 100 is
-    /// then a pixel or two off beside the plane, if four fifths of the right ones are on it.
     pub miss_probability: T,
 }
 
@@ -80,10 +74,6 @@ pub struct RobustFundamental<T: Real> {
 /// weights). Where most of what agrees is on one plane, F is completed by what is off it, and the plane is
 /// the answer where so many agree off it by chance, for noise moves them in any direction (Moisan & Stival
 /// 2004).
-///
-/// Eight correspondences are the least, thirty right ones should be there: of fifteen, three of them wrong,
-/// one scene in three has too few off a plane that its points lie near, and one estimate in five is over a
-/// pixel off.
 ///
 /// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`].
 /// A sample has three candidates at most. Each costs n distances at most, of which a bad one needs a few; one

@@ -34,8 +34,7 @@ pub(super) struct Search<'a, T: Real, const K: usize> {
     pub(super) sampler: Sampler<K>,
     sprt: Sprt<T>,
     stride: usize,
-    pub(super) miss_probability: T,
-    pub(super) threshold_px: T,
+    miss_probability: T,
     /// The gain of the best candidate before it was refined.
     raw_gain: T,
     pub(super) best: Option<Factored<T>>,
@@ -61,7 +60,6 @@ impl<'a, T: Real, const K: usize> Search<'a, T, K> {
             sprt: Sprt::new(),
             stride: stride(seen.len()),
             miss_probability: config.miss_probability,
-            threshold_px: config.threshold_px,
             raw_gain: T::ZERO,
             best: None,
             score: Score { gain: T::ZERO, inliers: 0 },

@@ -128,7 +128,7 @@ fn vectors_serve_as_memory_and_other_lengths_are_named() {
         let mut view = TemporalFilterView::new(config, 4, &mut average, &mut age).expect("as long");
         view.row(y, &row(y as u16), &mut both[1], &mut provenance);
         assert_eq!(both[0], both[1]);
-        assert_eq!(both[0] == [Disparity::ZERO; 4], y == 2, "there is no row 2");
+        assert_eq!(both[0] == [Disparity::NONE; 4], y == 2, "there is no row 2");
     }
     for (pixels, ages, width, needed) in [(8, 7, 4, 8), (7, 8, 4, 8), (8, 8, 3, 9)] {
         let refused = TemporalFilterView::new(config, width, &mut average[..pixels], &mut age[..ages]);

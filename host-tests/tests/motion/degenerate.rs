@@ -107,9 +107,9 @@ fn what_is_far_tells_no_pair_that_it_stands() {
         for (i, (found, step)) in trajectory.poses.iter().zip(&trajectory.steps).enumerate().skip(1) {
             assert_eq!(step.state, State::TranslationUnknown, "{step_m} m of {distance_m}: {i}");
             assert!(!step.state.is_known() && found.translation().norm() == 0.0);
-            // Two pixels, over all frames.
+            // What moves outwards pulls at the turn by half a pixel a frame.
             let turned = turned_deg(found, &Pose::identity());
-            assert!(turned < 0.5, "{step_m} m of {distance_m}: {i}: {turned}");
+            assert!(turned < 0.15 * i as f64, "{step_m} m of {distance_m}: {i}: {turned}");
         }
     }
 }

@@ -42,7 +42,8 @@ pub fn json(path: &Path) -> Value {
 fn every_kernel_and_number_of_threads_writes_the_same() {
     let bench = Bench::new();
     let out = bench.path("out");
-    for method in ["fast", "block"] {
+    // So few rows are no three bands of `block`.
+    for (method, threads) in [("fast", 3), ("block", 2)] {
         bench.matched(&[("--method", method)]);
         let [expected, flags] =
             ["disparity.pfm", "flags.png"].map(|file| fs::read(out.join(file)).expect("a result"));
@@ -54,7 +55,7 @@ fn every_kernel_and_number_of_threads_writes_the_same() {
         );
         assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} in three threads");
         let page = fs::read_to_string(out.join("report.html")).expect("the page");
-        assert!(page.contains(" ms</b>for the frame, 3 threads</li>"), "{method} in three threads");
+        assert!(page.contains(&format!(" ms</b>for the frame, {threads} threads</li>")), "{method}: {threads}");
         for kernel in Kernel::available().map(Kernel::name) {
             let by_option = stereo(bench.arguments(&[("--method", method), ("--kernel", kernel)]));
             let by_variable = program()

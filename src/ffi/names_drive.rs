@@ -62,9 +62,9 @@ macro_rules! c_api_of_driving {
         /// another one has begun since, or the frame is not to be trusted; stop for what is within the
         /// stopping distance, or left the picture at a side within the corridor; blind where the ground is
         /// not found, or too little of the corridor is seen, as where it is wider than the picture; slow down
-        /// for what is within twice the stopping distance or the time to contact; clear. What left the picture
-        /// is held until it is seen again: `stereopsis_drive_start` forgets it, once the vehicle has turned.
-        /// No hardware is called.
+        /// for what is within twice the stopping distance or the time to contact; clear. What left the
+        /// picture is held until it is seen again: `stereopsis_drive_start` forgets it, once the vehicle has
+        /// turned. No hardware is called.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_drive_decide"))]
         pub unsafe extern "C" fn stereopsis_drive_decide(
             handle: *mut DriveHandle,

@@ -3,8 +3,7 @@
 //! Near to the camera a corridor is wider than the picture. What leaves the picture there is still in the
 //! corridor, and no later frame can show that it is gone.
 
-use super::column::Column;
-use super::drive::NARROW_PX;
+use super::column::{Column, NARROW_PX};
 use super::held::Hysteresis;
 use super::setup::Setup;
 use crate::units::Disparity;

@@ -2,6 +2,9 @@
 
 /// Rows without ground that do not end what is seen of it.
 pub(super) const MOST_GAP: u8 = 2;
+/// Columns of pixels side by side, two matching windows, up to which a window sees more than one surface of a
+/// thing, so that its height is not known.
+pub(super) const NARROW_PX: u32 = 18;
 
 /// What stands in a column.
 #[derive(Clone, Copy, PartialEq, Eq, Default, Debug, Hash)]

@@ -1,16 +1,12 @@
 //! From free space to a decision: go on, slow down, stop, or nothing is known.
 
 use super::beside::{Beside, Sides};
-use super::column::StixelKind;
+use super::column::{NARROW_PX, StixelKind};
 use super::config::GroundSource;
 use super::finder::ObstaclesView;
 use super::held::{Held, Hysteresis};
 use super::hides::Needed;
 use super::watchdog::BlindReason;
-
-/// Columns of pixels side by side, two matching windows, up to which a window sees more than one surface of a
-/// thing, so that its height is not known.
-pub(super) const NARROW_PX: u32 = 18;
 
 /// How a vehicle drives and brakes.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]

@@ -17,9 +17,9 @@ pub const COLOURS: [(Rgb<u8>, &str); 4] = [
     (BLIND, "in the strip a sector that is blind"),
 ];
 
-/// The left image with the ground that is seen in green, obstacles in orange, the brighter the nearer, drops in
-/// purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind grey. The bright part
-/// of an obstacle's bar is the higher the nearer it is.
+/// The left image with the ground that is seen in green, obstacles in orange, the brighter the nearer, drops
+/// in purple; below it a strip of sectors: free green, obstacles orange, drops purple, blind grey. The bright
+/// part of an obstacle's bar is the higher the nearer it is.
 pub fn picture(config: &ObstacleConfig, frame: &ObstaclesView<'_>, left: &RgbImage) -> RgbImage {
     let (width, height) = left.dimensions();
     let strip = (height / 10).max(8);

@@ -183,7 +183,7 @@ impl ObstacleRecord {
             (None, Some(GroundRecord { pitch_sigma_deg, .. })) => {
                 let _ = write!(
                     line,
-                    "; ground seen over too few rows (three deviations of its pitch are {:.1} degrees, over .5)",
+                    "; ground seen over too few rows (its pitch sure to {:.1} degrees, over .5)",
                     3.0 * pitch_sigma_deg
                 );
             }

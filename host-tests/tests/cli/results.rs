@@ -55,7 +55,10 @@ fn every_kernel_and_number_of_threads_writes_the_same() {
         );
         assert!(fs::read(out.join("flags.png")).expect("a result") == flags, "{method} in three threads");
         let page = fs::read_to_string(out.join("report.html")).expect("the page");
-        assert!(page.contains(&format!(" ms</b>for the frame, {threads} threads</li>")), "{method}: {threads}");
+        assert!(
+            page.contains(&format!(" ms</b>for the frame, {threads} threads</li>")),
+            "{method}: {threads}"
+        );
         for kernel in Kernel::available().map(Kernel::name) {
             let by_option = stereo(bench.arguments(&[("--method", method), ("--kernel", kernel)]));
             let by_variable = program()

@@ -261,3 +261,13 @@ fn frames_are_those_of_the_finder() {
     let absent = frames_are_equal(flying, |c| c.ground = STEREOPSIS_GROUND_ABSENT);
     assert!(absent.contains(&STEREOPSIS_DECISION_STOP), "{absent:?}");
 }
+
+/// An obstacle map is no matcher, and has the same statuses.
+#[test]
+fn texts_of_statuses_are_true_of_every_handle() {
+    assert_eq!(Status::MinDisparity.text(), c"the search must end at 2046 px at most");
+    for status in [Status::AlreadyInitialised, Status::NotInitialised, Status::Overlap, Status::NotStarted] {
+        let text = status.text().to_str().expect("plain text");
+        assert!(!text.contains("matcher") && !text.contains("rectifier"), "{text}");
+    }
+}

@@ -180,10 +180,10 @@ static void odometries(void) {
     memset(features, 0xFF, sizeof features);
     for (int frame = 0; frame < 8; frame++) EXPECT(stereopsis_odometry_step(h, &left, &right, features, MOST, &step), OK);
     memset(features, 0x7F, sizeof features), wrong = config;
-    wrong.far_px = wrong.near_px = wrong.sigma_px = wrong.spacing_px = 1.0f / zero, wrong.most_disparity_px = 65535;
+    wrong.far_px = wrong.near_px = 1.0f / zero, wrong.sigma_px = 1000.0f, wrong.spacing_px = 1e30f, wrong.most_disparity_px = 65535;
     EXPECT(stereopsis_odometry_start(h, &rig, &wrong), OK);
     for (int frame = 0; frame < 3; frame++) EXPECT(stereopsis_odometry_step(h, &left, &right, features, MOST, &step), OK);
-    wrong.far_px = wrong.near_px = wrong.sigma_px = wrong.spacing_px = 0.0f, wrong.most_samples = 0;
+    wrong.far_px = wrong.near_px = 1e-30f, wrong.sigma_px = 0.001f, wrong.spacing_px = 0.0f, wrong.most_samples = 1;
     EXPECT(stereopsis_odometry_start(h, &rig, &wrong), OK);
     for (int frame = 0; frame < 3; frame++) EXPECT(stereopsis_odometry_step(h, &left, &right, features, 0, &step), OK);
     EXPECT(stereopsis_odometry_deinit(NULL), NULL);

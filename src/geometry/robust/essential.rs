@@ -144,11 +144,7 @@ const BINS: usize = 64;
 
 /// Three standard deviations of the noise of Sampson's distances, px: 1.4826 times their median is one, of
 /// what is within the threshold, to a sixty-fourth of that; the threshold at most, a tenth of it at least.
-pub(super) fn three_deviations_px<T: Real>(
-    f: &Fundamental<T>,
-    seen: &[Correspondence<T>],
-    threshold_px: T,
-) -> T {
+fn three_deviations_px<T: Real>(f: &Fundamental<T>, seen: &[Correspondence<T>], threshold_px: T) -> T {
     let (mut counts, mut all) = ([0_usize; BINS], 0);
     let per_px = T::count(BINS) / threshold_px;
     for s in seen {

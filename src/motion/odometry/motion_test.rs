@@ -26,6 +26,8 @@ const THREE: f64 = 21.0;
 const SHARE: f64 = 0.3;
 /// Deviation of a step, in baselines, from which on a step that may be none is not known.
 const UNKNOWN: f64 = 0.1;
+/// Deviation of a step, in baselines, up to which a camera stands whose pictures are the same.
+const SHOWN: f64 = 1.0;
 /// Deviation of a step, in baselines, from which on no step is known.
 const OPEN: f64 = 100.0;
 /// Deviation of a step, in its own length or baselines, and of a turn, radians, from which on a pose is not
@@ -83,10 +85,9 @@ pub(super) fn test_motion<T: Real>(
         // Of one camera the last step is as good a unit as any.
         None => motion.last_step * T::of(10.0),
     };
-    let is_known = deviation <= unit * T::of(UNKNOWN);
     let still = problem.solve(motion.reported_pose, Free::Nothing);
     // Points too far away have no slope by a step: with them alone any step costs as much as none.
-    if is_known && gain(&still) < T::of(SIX) {
+    if deviation <= unit * T::of(SHOWN) && gain(&still) < T::of(SIX) {
         return MotionTest::Known(still, State::Stationary);
     }
     let was_lost = motion.was_lost();
@@ -94,7 +95,7 @@ pub(super) fn test_motion<T: Real>(
     let turn = Pose::of_parts(*all.pose.rotation(), *motion.reported_pose.translation());
     let turned = problem.solve(turn, Free::Rotation);
     let is_none = gain(&turned) < T::of(THREE);
-    if !(deviation <= unit * T::of(OPEN)) || (is_none && !is_known) {
+    if !(deviation <= unit * T::of(OPEN)) || (is_none && deviation > unit * T::of(UNKNOWN)) {
         return MotionTest::Known(turned, State::TranslationUnknown);
     }
     if is_none && rig.right.is_none() {

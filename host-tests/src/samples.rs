@@ -61,7 +61,10 @@ mod tests {
     use stereopsis::geometry::camera::RectifiedRig;
     use stereopsis::units::PixelFlags;
 
-    fn map(disparity: Vec<Disparity>) -> DisparityMap {
+    /// No answer, then answers of so many px.
+    fn map(px: &[u16]) -> DisparityMap {
+        let answers = px.iter().map(|&px| Disparity::from_pixels(px));
+        let disparity: Vec<_> = [Disparity::NONE].into_iter().chain(answers).collect();
         DisparityMap {
             width: disparity.len(),
             height: 1,
@@ -74,16 +77,10 @@ mod tests {
 
     #[test]
     fn an_answer_of_nothing_is_not_no_answer_and_one_of_256_px_is_counted() {
-        let disparity = [
-            Disparity::NONE,
-            Disparity::from_raw(0),
-            Disparity::from_raw(33),
-            Disparity::from_pixels(255),
-            Disparity::from_pixels(256),
-            Disparity::MAX,
-        ];
+        let mut map = map(&[0, 1, 255, 256, 2000]);
+        map.disparity[2] = Disparity::from_raw(33);
         let samples = vec![0, 1, 264, 65280, 65535, 65535];
-        assert_eq!(Samples::of_disparities(&map(disparity.to_vec())), Samples { samples, clamped: 2 });
+        assert_eq!(Samples::of_disparities(&map), Samples { samples, clamped: 2 });
     }
 
     #[test]
@@ -91,14 +88,7 @@ mod tests {
         // 100 m at a pixel of disparity.
         let scale =
             DepthScale::new(&RectifiedRig::new(1000.0, 0.1, 8.0, 8.0).expect("a rig")).expect("a scale");
-        let disparity = [
-            Disparity::NONE,
-            Disparity::from_pixels(0),
-            Disparity::from_pixels(1),
-            Disparity::from_pixels(2),
-            Disparity::from_pixels(1000),
-        ];
-        let map = map(disparity.to_vec());
+        let map = map(&[0, 1, 2, 1000]);
         let of = |unit_m| Samples::of_depths(&map, &scale, unit_m);
         assert_eq!(of(MILLIMETRE), Samples { samples: vec![0, 65535, 65535, 50_000, 100], clamped: 2 });
         assert_eq!(of(1.0 / 256.0), Samples { samples: vec![0, 65535, 25_600, 12_800, 26], clamped: 1 });

@@ -11,7 +11,7 @@ use super::sector::{Sector, SectorState};
 pub struct Hysteresis {
     /// Frames in a row that have to show an obstacle before it counts; 1 is at once.
     pub confirm: u8,
-    /// Frames in a row without an obstacle for which it still counts.
+    /// Frames in a row without an obstacle for which it still counts; 255 is for ever.
     pub release: u8,
 }
 

@@ -6,11 +6,12 @@
 //! what a path from above has gathered farther up: `tests/matching/threads.rs` measures how many answers that
 //! changes.
 
-use super::{Host, MemoryPair, Outcome, RunError, RunOptions, frame};
+use super::{Host, MemoryPair, Outcome, RunOptions, frame};
 use crate::map::DisparityMap;
-use std::sync::Barrier;
-use std::thread::{Builder, scope};
-use std::time::Instant;
+use std::hint::{black_box, spin_loop};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread::{Builder, scope, yield_now};
+use std::time::{Duration, Instant};
 use stereopsis::matching::{Config, ConfigError, Kernel, Method, Row};
 use stereopsis::pipeline::Band;
 use stereopsis_rig::with_method;
@@ -43,20 +44,23 @@ impl Bands {
     /// One frame into a map. The time is that of the band that took longest.
     pub(super) fn run(&mut self) -> Result<Outcome, ConfigError> {
         let width = usize::from(self.config.width);
-        let results = self.in_threads(|band, frame| {
+        let results = self.in_threads(|band, kernel, frame| {
             let mut map = DisparityMap::new(width, band.rows().len());
             let first = band.rows().start;
-            let (kernel, time_ms) = frame(&mut |row| {
+            let (mut kept, start) = (Duration::ZERO, Instant::now());
+            frame(&mut |row| {
+                let start = Instant::now();
                 if let Some(y) = band.row(row.index()) {
                     map.put(usize::from(y - first), row);
                 }
-            })?;
-            Ok(Outcome { map, kernel, time_ms, threads: 1 })
-        });
+                kept += start.elapsed();
+            });
+            let time_ms = start.elapsed().saturating_sub(kept).as_secs_f64() * 1e3;
+            Outcome { map, kernel, time_ms, threads: 1 }
+        })?;
         let mut results = results.into_iter();
-        let mut whole = results.next().expect("a frame has a row")?;
-        for result in results {
-            let band: Outcome = result?;
+        let mut whole = results.next().expect("a frame has a row");
+        for band in results {
             whole.map.append(band.map);
             whole.threads += 1;
             whole.time_ms = whole.time_ms.max(band.time_ms);
@@ -67,27 +71,27 @@ impl Bands {
     /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran
     /// on. The threads stay, and begin a frame together, as soon as the last one is done with the one before.
     pub(super) fn time(&mut self, frames: usize) -> Result<(Vec<f64>, Kernel), ConfigError> {
-        // What cannot be done shows here.
-        let kernel = self.run()?.kernel;
-        let together = Barrier::new(self.parts.len());
-        let times_ms = self.in_threads(|_, frame| {
+        let together = Meeting::new(self.parts.len());
+        let times = self.in_threads(|_, kernel, frame| {
             together.wait();
             let mut start = Instant::now();
             let time = |_| {
-                frame(&mut |row| _ = std::hint::black_box(row.disparities())).expect("it did before");
+                frame(&mut |row| _ = black_box(row.disparities()));
                 together.wait();
                 let end = Instant::now();
                 end.duration_since(std::mem::replace(&mut start, end)).as_secs_f64() * 1e3
             };
-            (0..=frames).map(time).skip(1).collect()
-        });
+            ((0..=frames).map(time).skip(1).collect(), kernel)
+        })?;
         // They meet after each frame: the times of one are those of all.
-        let times_ms = times_ms.into_iter().next().expect("a frame has a row");
-        Ok((times_ms, kernel))
+        Ok(times.into_iter().next().expect("a frame has a row"))
     }
 
-    /// Does something with every band, in a thread each that has a pipeline.
-    fn in_threads<T: Send>(&mut self, work: impl Fn(&Band, &mut Frame<'_>) -> T + Sync) -> Vec<T> {
+    /// Does something with every band, in a thread each that has a pipeline, once all of these are started.
+    fn in_threads<T: Send>(
+        &mut self,
+        work: impl Fn(&Band, Kernel, &mut Frame<'_>) -> T + Sync,
+    ) -> Result<Vec<T>, ConfigError> {
         let (options, config, work) = (self.options, &self.config, &work);
         scope(|scope| {
             let threads = self.parts.iter_mut().map(|(band, pair)| {
@@ -103,21 +107,80 @@ impl Bands {
     }
 }
 
-/// Matches a frame and hands its rows on: the kernel, and the time in milliseconds.
-type Frame<'a> = dyn FnMut(&mut dyn FnMut(Row<'_>)) -> Result<(Kernel, f64), ConfigError> + 'a;
+/// Where threads wait for one another. They spin: being woken takes a twentieth of a small frame.
+struct Meeting {
+    threads: usize,
+    there: AtomicUsize,
+    times: AtomicUsize,
+}
+
+impl Meeting {
+    /// Rounds of spinning before other threads are let in, of which there may be more than cores.
+    const SPINS: usize = 1 << 12;
+
+    fn new(threads: usize) -> Self {
+        Self { threads, there: AtomicUsize::new(0), times: AtomicUsize::new(0) }
+    }
+
+    /// Returns when all threads are there.
+    fn wait(&self) {
+        let times = self.times.load(Ordering::Acquire);
+        if self.there.fetch_add(1, Ordering::AcqRel) + 1 == self.threads {
+            self.there.store(0, Ordering::Release);
+            self.times.store(times.wrapping_add(1), Ordering::Release);
+            return;
+        }
+        let mut spins = 0;
+        while self.times.load(Ordering::Acquire) == times {
+            spins += 1;
+            if spins < Self::SPINS {
+                spin_loop();
+            } else {
+                yield_now();
+            }
+        }
+    }
+}
+
+/// Matches a frame and hands its rows on.
+type Frame<'a> = dyn FnMut(&mut dyn FnMut(Row<'_>)) + 'a;
 
 fn with_pipeline<S: Method, T>(
     options: RunOptions,
     config: &Config,
     band: &Band,
     pair: &mut MemoryPair,
-    work: &impl Fn(&Band, &mut Frame<'_>) -> T,
-) -> T {
-    let config = band.config(config);
+    work: &impl Fn(&Band, Kernel, &mut Frame<'_>) -> T,
+) -> Result<T, ConfigError> {
     let mut pipeline = Host::<S>::new();
-    work(band, &mut |keep| match frame(options, &mut pipeline, &config, pair, keep) {
-        Ok(done) => Ok(done),
-        Err(RunError::Config(e)) => Err(e),
-        Err(RunError::Pipeline(e)) => panic!("a source that cannot fail: {e}"),
-    })
+    options.start(&mut pipeline, &band.config(config))?;
+    // What comes out below the band's rows is another one's.
+    let rows = band.rows().end - band.lines().start;
+    let kernel = pipeline.kernel();
+    Ok(work(band, kernel, &mut |keep| {
+        frame(&mut pipeline, pair, rows, keep).expect("a source that cannot fail")
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn threads_meet_after_each_round() {
+        const THREADS: usize = 5;
+        let (meeting, done) = (Meeting::new(THREADS), AtomicUsize::new(0));
+        scope(|scope| {
+            for _ in 0..THREADS {
+                scope.spawn(|| {
+                    for round in 1..=200 {
+                        done.fetch_add(1, Ordering::AcqRel);
+                        meeting.wait();
+                        assert_eq!(done.load(Ordering::Acquire), round * THREADS);
+                        meeting.wait();
+                    }
+                });
+            }
+        });
+    }
 }

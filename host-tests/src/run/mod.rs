@@ -25,6 +25,7 @@ pub use stereopsis_rig::method::{MethodName, UnknownMethod};
 use self::bands::Bands;
 use crate::map::DisparityMap;
 use std::fmt;
+use std::hint::black_box;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 use stereopsis::camera::StereoSource;
@@ -136,36 +137,41 @@ pub fn run<C: StereoSource<Error: fmt::Display>>(
         progress(config.height);
         return Ok(outcome);
     }
-    let mut map = DisparityMap::new(usize::from(config.width), usize::from(config.height));
-    let mut keep = |row: Row<'_>| {
-        map.put(usize::from(row.index()), row);
-        progress(row.index() + 1);
-    };
-    let (kernel, time_ms) =
-        with_method!(options.method, S => frame(options, &mut *hold::<S>(), config, camera, &mut keep)?);
-    Ok(Outcome { map, kernel, time_ms, threads: 1 })
+    fn timed<S: Held, C: StereoSource<Error: fmt::Display>>(
+        options: RunOptions,
+        config: &Config,
+        camera: &mut C,
+        progress: &mut impl FnMut(u16),
+    ) -> Result<Outcome, RunError<C::Error>> {
+        let mut pipeline = hold::<S>();
+        options.start(&mut pipeline, config).map_err(RunError::Config)?;
+        let mut map = DisparityMap::new(usize::from(config.width), usize::from(config.height));
+        let (mut kept, start) = (Duration::ZERO, Instant::now());
+        frame(&mut *pipeline, camera, config.height, |row| {
+            let start = Instant::now();
+            map.put(usize::from(row.index()), row);
+            progress(row.index() + 1);
+            kept += start.elapsed();
+        })?;
+        let time_ms = start.elapsed().saturating_sub(kept).as_secs_f64() * 1e3;
+        Ok(Outcome { map, kernel: pipeline.kernel(), time_ms, threads: 1 })
+    }
+    with_method!(options.method, S => timed::<S, C>(options, config, camera, &mut progress))
 }
 
-/// One frame through a pipeline: the kernel that did it, and its time in milliseconds without that of `keep`.
+/// The first `rows` rows of a frame through a pipeline that was started, to `keep` one by one.
 fn frame<S: Method, C: StereoSource<Error: fmt::Display>>(
-    options: RunOptions,
     pipeline: &mut Host<S>,
-    config: &Config,
     camera: &mut C,
-    keep: &mut dyn FnMut(Row<'_>),
-) -> Result<(Kernel, f64), RunError<C::Error>> {
-    options.start(pipeline, config).map_err(RunError::Config)?;
+    rows: u16,
+    mut keep: impl FnMut(Row<'_>),
+) -> Result<(), PipelineError<C::Error>> {
     pipeline.begin_frame(camera)?;
-    let mut time = Duration::ZERO;
-    loop {
-        let start = Instant::now();
-        let row = pipeline.next_row(camera)?;
-        time += start.elapsed();
-        match row {
-            Some(row) => keep(row),
-            None => return Ok((pipeline.kernel(), time.as_secs_f64() * 1e3)),
-        }
+    for _ in 0..rows {
+        let Some(row) = pipeline.next_row(camera)? else { break };
+        keep(row);
     }
+    Ok(())
 }
 
 /// The times of `frames` frames in milliseconds, after one that is left out, and the kernel that they ran on.
@@ -194,10 +200,7 @@ pub fn time_frames<C: StereoSource<Error: fmt::Display>>(
         let mut times_ms = Vec::with_capacity(frames);
         for frame in 0..=frames {
             let start = Instant::now();
-            pipeline.begin_frame(camera)?;
-            while let Some(row) = pipeline.next_row(camera)? {
-                std::hint::black_box(row.disparities());
-            }
+            self::frame(pipeline, camera, config.height, |row| _ = black_box(row.disparities()))?;
             if frame > 0 {
                 times_ms.push(start.elapsed().as_secs_f64() * 1e3);
             }

@@ -12,7 +12,7 @@ const WITH_DSP: [&str; 4] = ["cortex-m4", "cortex-m7", "cortex-m33", "cortex-m35
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-env-changed=CARGO_ENCODED_RUSTFLAGS");
-    for name in ["dsp", "vectors", "thumb2", "rv32m", "portable", "simd"] {
+    for name in ["dsp", "vectors", "thumb2", "rv32m", "rvv", "portable", "simd"] {
         println!("cargo::rustc-check-cfg=cfg(stereopsis_{name})");
     }
     let target = env::var("TARGET").unwrap_or_default();
@@ -24,6 +24,9 @@ fn main() {
         }
         Ok(None) => {}
         Err(line) => println!("cargo::error={line}"),
+    }
+    if is("CARGO_CFG_TARGET_ARCH", "riscv32") && has_rvv(&flags) && !flags.contains("stereopsis_portable") {
+        println!("cargo::rustc-cfg=stereopsis_rvv");
     }
     if has_simd() {
         println!("cargo::rustc-cfg=stereopsis_simd");
@@ -39,6 +42,19 @@ fn is(key: &str, value: &str) -> bool {
 fn has_products() -> bool {
     let [has_m, has_few] = ["m", "e"].map(|feature| is("CARGO_CFG_TARGET_FEATURE", feature));
     is("CARGO_CFG_TARGET_ARCH", "riscv32") && has_m && !has_few
+}
+
+/// Whether the flags name vectors of RISC-V, with registers of 16 bytes at least. Rust's stable compiler knows them
+/// by `-C target-feature`, and says so to no crate.
+fn has_rvv(flags: &str) -> bool {
+    let named = |feature: &str| {
+        flags
+            .split(['\u{1f}', ',', '='])
+            .any(|word| word.trim_start_matches('+') == feature && word.starts_with('+'))
+    };
+    let has_vectors = ["zve32x", "zve32f", "zve64x", "zve64f", "zve64d"].into_iter().any(named);
+    let is_long = [128, 256, 512, 1024].into_iter().any(|bits| named(&format!("zvl{bits}b")));
+    named("v") || has_vectors && is_long
 }
 
 /// Whether the dense path runs in the vectors of `matching/backend/simd`.

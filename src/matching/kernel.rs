@@ -14,6 +14,8 @@ pub enum Kernel {
     Dsp,
     /// The vectors of a Cortex-M55 (with `-C target-cpu`).
     Helium,
+    /// The vectors of a 32-bit RISC-V core (Zve32x with Zvl128b, by `-C target-feature`).
+    Rvv,
     /// The vectors that every processor of a target has: SSE2, NEON, or SIMD128 of WebAssembly (with
     /// `-C target-feature=+simd128`).
     Lanes,
@@ -25,7 +27,8 @@ pub enum Kernel {
 
 impl Kernel {
     /// Every kernel of the crate, whether it is available or not.
-    pub const ALL: [Self; 6] = [Self::Planes, Self::Dsp, Self::Helium, Self::Lanes, Self::Avx2, Self::Avx512];
+    pub const ALL: [Self; 7] =
+        [Self::Planes, Self::Dsp, Self::Helium, Self::Rvv, Self::Lanes, Self::Avx2, Self::Avx512];
 
     /// The kernel's name in reports.
     pub const fn name(self) -> &'static str {
@@ -33,6 +36,7 @@ impl Kernel {
             Self::Planes => "planes",
             Self::Dsp => "dsp",
             Self::Helium => "helium",
+            Self::Rvv => "rvv",
             Self::Lanes => "lanes",
             Self::Avx2 => "avx2",
             Self::Avx512 => "avx512",
@@ -59,7 +63,7 @@ mod tests {
 
     #[test]
     fn each_kernel_has_its_name() {
-        let names = ["planes", "dsp", "helium", "lanes", "avx2", "avx512"];
+        let names = ["planes", "dsp", "helium", "rvv", "lanes", "avx2", "avx512"];
         assert_eq!(Kernel::ALL.map(Kernel::name), names);
     }
 }

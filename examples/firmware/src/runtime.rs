@@ -31,6 +31,23 @@ pub fn run<M, F: defmt::Format>(
     end(done.is_ok())
 }
 
+/// What the start-up code calls first, with no memory yet.
+#[cfg(target_arch = "riscv32")]
+#[allow(unsafe_code)]
+mod before_main {
+    // Lets instructions on vectors run, which a hart that has some does not until `mstatus` says so.
+    // SAFETY: it changes no other bit, and no register that is kept.
+    core::arch::global_asm!(
+        ".section .init.pre_init, \"ax\"",
+        ".global __pre_init",
+        "__pre_init:",
+        "li t0, {both_bits}",
+        "csrs mstatus, t0",
+        "ret",
+        both_bits = const 3 << 9,
+    );
+}
+
 /// Ends the emulation: with status 0 when all went well, else 1.
 pub fn end(well: bool) -> ! {
     process::exit(if well { 0 } else { 1 })

@@ -6,6 +6,7 @@
 //! * `simd`: vectors of 64-bit processors, and of WebAssembly with SIMD128.
 //! * `armv7em`: Arm's instructions on four bytes in a word (Cortex-M4, M7, M33), where build.rs finds them.
 //! * `mve`: the vectors of a Cortex-M55, likewise.
+//! * `rvv`: the vectors of a 32-bit RISC-V core (Zve32x), likewise.
 //!
 //! A new core's code is a folder with an [`Isa`] of its own, and an arm here.
 
@@ -24,6 +25,8 @@ mod work;
 mod armv7em;
 #[cfg(stereopsis_vectors)]
 mod mve;
+#[cfg(stereopsis_rvv)]
+mod rvv;
 #[cfg(stereopsis_simd)]
 mod simd;
 
@@ -34,8 +37,10 @@ compile_error!("stereopsis is for little-endian processors: words of memory stan
 use armv7em as target;
 #[cfg(stereopsis_vectors)]
 use mve as target;
-#[cfg(not(any(stereopsis_dsp, stereopsis_vectors, stereopsis_simd)))]
+#[cfg(not(any(stereopsis_dsp, stereopsis_vectors, stereopsis_rvv, stereopsis_simd)))]
 use plain as target;
+#[cfg(stereopsis_rvv)]
+use rvv as target;
 #[cfg(stereopsis_simd)]
 use simd as target;
 

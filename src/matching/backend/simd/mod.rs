@@ -91,7 +91,7 @@ impl Backend {
             Kernel::Lanes => Some(Self::Lanes),
             Kernel::Avx2 => Avx2::detect().map(Self::Avx2),
             Kernel::Avx512 => Avx512::detect().map(Self::Avx512),
-            Kernel::Dsp | Kernel::Helium => None,
+            Kernel::Dsp | Kernel::Helium | Kernel::Rvv => None,
         }
     }
 

@@ -1,0 +1,40 @@
+//! A path's step.
+
+/// Moves the path in `v8` on to a pixel: `least` is the least that it costs, `step` and `jump` what changes
+/// cost there, and at `costs` stand the pixel's. Nine instructions.
+///
+/// With m the least that it costs to come from near, it is `min(m - least, jump) + cost`. Beside the ends of a
+/// column is `far`, a cost that no path comes from: with a step it is 127 at most, more than any path costs.
+macro_rules! step {
+    ($step:literal, $jump:literal) => {
+        concat!(
+            "vslide1up.vx v16, v8, {far}\n",
+            "vslide1down.vx v24, v8, {far}\n",
+            "vminu.vv v16, v16, v24\n",
+            "vadd.vx v16, v16, {",
+            $step,
+            "}\n",
+            "vminu.vv v16, v16, v8\n",
+            "vsub.vx v16, v16, {least}\n",
+            "vminu.vx v16, v16, {",
+            $jump,
+            "}\n",
+            "vle8.v v8, ({costs})\n",
+            "vadd.vv v8, v8, v16",
+        )
+    };
+}
+
+/// What the least number of a group is, in the lowest byte of a register. `v1` has 255 in its first lane.
+macro_rules! least {
+    ($group:literal, $to:literal) => {
+        concat!("vredminu.vs v2, ", $group, ", v1\n", "vmv.x.s {", $to, "}, v2")
+    };
+}
+
+/// What a step and a jump cost at the next pixel.
+macro_rules! change {
+    ($step:literal, $jump:literal) => {
+        concat!("lhu {", $step, "}, 0({changes})\n", "srli {", $jump, "}, {", $step, "}, 8")
+    };
+}

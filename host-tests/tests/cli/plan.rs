@@ -103,7 +103,7 @@ fn what_cannot_be_planned_is_named() {
     refused(&["--farthest", "0.4"], "--nearest 0.4: is not nearer");
     refused(&["--farthest", "nan"], "--farthest");
     refused(&["--farthest", "5", "--accuracy", "0"], "--accuracy");
-    refused(&["--farthest", "5", "--core", "m9"], "the cores are m0, m3, m4, m7, m33, m55, rv32");
+    refused(&["--farthest", "5", "--core", "m9"], "the cores are m0, m3, m4, m7, m33, m55, rv32, rv32v");
     refused(&["--farthest", "5", "--field-of-view", "60"], "--field-of-view");
     refused(&["--farthest", "5", "--sensor-width-mm", "3"], "--sensor-width-mm");
     let rig = ["plan", "--baseline-mm", "60", "--nearest", "1", "--farthest", "5"];

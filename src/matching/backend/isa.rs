@@ -24,7 +24,7 @@ pub(in crate::matching) trait Isa: Copy {
     /// Whether winners stand in words, one for each pixel, and not in a row of bytes for each part.
     #[cfg(feature = "trace")]
     fn has_winners_in_words(self) -> bool {
-        matches!(self.kernel(), Kernel::Planes | Kernel::Dsp)
+        matches!(self.kernel(), Kernel::Planes | Kernel::Dsp | Kernel::Rvv)
     }
 
     /// How many candidates of a column the kernel works on for so many `disparities`, of which there is room

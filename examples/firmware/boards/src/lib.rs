@@ -13,6 +13,8 @@ pub struct Board {
     pub target: &'static str,
     /// QEMU's name of the machine.
     pub machine: &'static str,
+    /// QEMU's name of the processor, with what it has; the machine's own where it is `None`.
+    pub cpu: Option<&'static str>,
     /// Where the program is kept, and how many bytes there are.
     pub flash: (u32, u32),
     /// Where the data is kept, and how many bytes there are.
@@ -29,6 +31,7 @@ pub const M0: Board = Board {
     core: "m0",
     target: "thumbv6m-none-eabi",
     machine: "microbit",
+    cpu: None,
     flash: (0, 256 * K),
     ram: (0x2000_0000, 16 * K),
     ticks_per_second: 16_000_000,
@@ -39,6 +42,7 @@ pub const M3: Board = Board {
     core: "m3",
     target: "thumbv7m-none-eabi",
     machine: "mps2-an385",
+    cpu: None,
     flash: (0, 4 * M),
     ram: (0x2000_0000, 4 * M),
     ticks_per_second: 25_000_000,
@@ -55,6 +59,7 @@ pub const M33: Board = Board {
     core: "m33",
     target: "thumbv8m.main-none-eabihf",
     machine: "mps2-an505",
+    cpu: None,
     flash: (0x1000_0000, 4 * M),
     ram: (0x3800_0000, 4 * M),
     ticks_per_second: 20_000_000,
@@ -65,6 +70,7 @@ pub const M55: Board = Board {
     core: "m55",
     target: "thumbv8m.main-none-eabihf",
     machine: "mps3-an547",
+    cpu: None,
     flash: (0x1000_0000, 512 * K),
     ram: (0x3100_0000, 2 * M),
     ticks_per_second: 32_000_000,
@@ -75,10 +81,15 @@ pub const RV32: Board = Board {
     core: "rv32",
     target: "riscv32imc-unknown-none-elf",
     machine: "virt",
+    cpu: None,
     flash: (0x8000_0000, 4 * M),
     ram: (0x8040_0000, 4 * M),
     ticks_per_second: 1_000_000_000,
 };
 
+/// The same with vectors: the instructions of Zve32x, in registers of 16 bytes. QEMU's core has those of all
+/// widths.
+pub const RV32V: Board = Board { core: "rv32v", cpu: Some("rv32,v=true,vlen=128,vext_spec=v1.0"), ..RV32 };
+
 /// All of them. Of two with the same target the first is the one that is meant when no core is named.
-pub const ALL: [Board; 7] = [M0, M3, M4, M7, M33, M55, RV32];
+pub const ALL: [Board; 8] = [M0, M3, M4, M7, M33, M55, RV32, RV32V];

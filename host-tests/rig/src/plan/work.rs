@@ -2,7 +2,7 @@
 //!
 //! The work of a frame is that of its pixels. For a pixel it grows with the disparities as the measured sizes
 //! of that core and method have it: along a straight line between them, and outside of them as the table of
-//! growth has it, of which a core without vectors takes the Cortex-M4's columns. So it is exact at the sizes
+//! growth has it: of a Cortex-M55 for a method in vectors, else of a Cortex-M4. So it is exact at the sizes
 //! that were measured.
 
 use super::measured::{Growth, Measured, firmware, growth};
@@ -11,8 +11,8 @@ use serde::Serialize;
 use stereopsis::geometry::camera::ImageSize;
 
 /// The cores that were measured, and the clock of a well-known microcontroller with each: nRF51, STM32F1,
-/// STM32F4, STM32H7, RP2350, Ensemble E7, RP2350. MHz.
-pub const CORES: [(&str, f64); 7] = [
+/// STM32F4, STM32H7, RP2350, Ensemble E7, RP2350; the last one's is that of a soft core. MHz.
+pub const CORES: [(&str, f64); 8] = [
     ("m0", 16.0),
     ("m3", 72.0),
     ("m4", 168.0),
@@ -20,6 +20,7 @@ pub const CORES: [(&str, f64); 7] = [
     ("m33", 150.0),
     ("m55", 400.0),
     ("rv32", 150.0),
+    ("rv32v", 100.0),
 ];
 
 /// What a method takes on a core. Names are those of `stereo plan --json`.
@@ -94,8 +95,9 @@ impl Tables {
         if (first.0..=last.0).contains(&disparities) {
             return Some(between(points, disparities));
         }
-        let core = if core == "m55" { core } else { "m4" };
         let grows_as = if method.compares_brightness() { MethodName::Sgm } else { MethodName::Block };
+        let is_in_vectors = core == "m55" || core == "rv32v" && grows_as == MethodName::Sgm;
+        let core = if is_in_vectors { "m55" } else { "m4" };
         let growth = self.growth.iter().find(|growth| growth.core == core && growth.method == grows_as)?;
         Some(known * between(&growth.points, disparities) / between(&growth.points, at))
     }

@@ -48,7 +48,7 @@ pub struct PlanArgs {
     /// How much RAM there is for a pipeline and its stack, KB of 1024 bytes
     #[arg(long, value_name = "KB", value_parser = length, allow_negative_numbers = true)]
     ram_kb: Option<f32>,
-    /// A core: m0, m3, m4, m7, m33, m55 or rv32; all of them where none is given
+    /// A core: m0, m3, m4, m7, m33, m55, rv32 or rv32v; all of them where none is given
     #[arg(long, value_name = "CORE", value_parser = core)]
     core: Option<&'static str>,
     /// The clock, MHz; that of a well-known microcontroller with the core where none is given

@@ -1,13 +1,14 @@
 //! README.md's table of instructions: cells of the one in docs/performance.md.
 
 /// A column's name, and the cores that have its figures, in pictures of so many pixels and disparities.
-const COLUMNS: [(&str, &[&str], [&str; 2]); 6] = [
+const COLUMNS: [(&str, &[&str], [&str; 2]); 7] = [
     ("M0 (96x64x16)", &["m0"], ["96x64", "16"]),
     ("M3", &["m3"], SIZE),
     ("M4, M7", &["m4", "m7"], SIZE),
     ("M33", &["m33"], SIZE),
     ("M55", &["m55"], SIZE),
     ("RV32", &["rv32"], SIZE),
+    ("RV32, vectors", &["rv32v"], SIZE),
 ];
 const SIZE: [&str; 2] = ["160x120", "32"];
 const METHODS: [&str; 3] = ["`fast`", "`block`", "`sgm`"];

@@ -21,7 +21,7 @@ pub struct Arguments {
     /// With a program other than depth: made for size, not for speed
     #[arg(long)]
     small: bool,
-    /// The core: m0, m3, m4, m7, m33, m55 or rv32
+    /// The core: m0, m3, m4, m7, m33, m55, rv32 or rv32v
     #[arg(long, value_parser = core, required_unless_present_any = ["all", "stages", "profiles"])]
     core: Option<Board>,
     /// The left image, PNG, JPEG, PGM/PPM, TIFF, BMP or WebP; without images the cameras see the built-in
@@ -150,8 +150,8 @@ impl Arguments {
                     "--core m0: {name} needs more RAM than QEMU's microbit has"
                 )));
             }
-            if board == board::RV32 && name == "interrupt" {
-                return Err(Failure::new("--core rv32: interrupt needs the timer of a Cortex-M"));
+            if board.target == board::RV32.target && name == "interrupt" {
+                return Err(Failure::new("--core rv32 and rv32v: interrupt needs the timer of a Cortex-M"));
             }
             if self.small && (name == "rectify" || name == "drive") {
                 return Err(Failure::new(format!(

@@ -7,7 +7,7 @@ use super::program::{Optimised, Program};
 use super::results::Ran;
 use crate::pictures::Pictures;
 use crate::steps::{Failure, Outcome};
-use firmware_boards::{M3, M55, RV32};
+use firmware_boards::{M3, M55, RV32, RV32V};
 use firmware_scenes::any_frames::AnyFrames;
 use stereopsis_host::run::MethodName;
 
@@ -28,6 +28,7 @@ pub fn check() -> Outcome {
         (M55, MethodName::Block, &PROGRAMS[..]),
         (M3, MethodName::Sgm, &PROGRAMS[..1]),
         (RV32, MethodName::Sgm, &PROGRAMS[..1]),
+        (RV32V, MethodName::Sgm, &PROGRAMS[..]),
     ];
     for (board, method, programs) in programs {
         for &(most, disparities) in programs {
@@ -51,7 +52,7 @@ fn any_frames() -> Outcome {
     let put = |sum: u32| host.extend_from_slice(&sum.to_le_bytes());
     let mut frames = Box::new(AnyFrames::new());
     frames.run(put).map_err(|e| Failure::new(format!("any frames on the host: {e:?}")))?;
-    for board in [M55, RV32] {
+    for board in [M55, RV32, RV32V] {
         let ran = Ran::of(board, "any_frames", Optimised::Speed, &host)?;
         println!(
             "any_frames: {} frames on {} are equal to the host's",

@@ -23,6 +23,7 @@ fn qemu(board: Board) -> Command {
     if board.target.starts_with("riscv") {
         qemu.args(["-bios", "none"]);
     }
+    qemu.args(board.cpu.into_iter().flat_map(|cpu| ["-cpu", cpu]));
     qemu.args(["-serial", "none", "-icount", "shift=0,align=off,sleep=off"]);
     qemu.args(["-semihosting-config", "enable=on,target=native", "-kernel"]);
     qemu

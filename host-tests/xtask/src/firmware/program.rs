@@ -15,14 +15,16 @@ const BUDGET: usize = 64 * 1024;
 /// RAM beside the pipeline: the stack, the camera, the log, bytes.
 const BESIDE: usize = 3072;
 
-/// Flags for the core with vector instructions.
+/// Flags for the cores with vector instructions.
 pub const VECTORS: &str = "-C target-cpu=cortex-m55";
+const RISCV_VECTORS: &str = "-C target-feature=+zve32x,+zvl128b";
 
 /// The flags that tell the crate what a core has which its target does not say.
 fn flags(board: Board) -> &'static str {
     match board.core {
         "m33" => "-C target-cpu=cortex-m33",
         "m55" => VECTORS,
+        "rv32v" => RISCV_VECTORS,
         _ => "",
     }
 }

@@ -9,12 +9,12 @@ use crate::parallel;
 use crate::pictures::Pictures;
 use crate::setup;
 use crate::steps::{Failure, Outcome};
-use firmware_boards::{Board, M3, M4, M55, RV32};
+use firmware_boards::{Board, M3, M4, M55, RV32, RV32V};
 use firmware_scenes::scene::Scene;
 use stereopsis_host::run::MethodName;
 
 /// Those whose code differs: an M7 and an M33 run an M4's.
-const CORES: [Board; 4] = [M3, M4, M55, RV32];
+const CORES: [Board; 5] = [M3, M4, M55, RV32, RV32V];
 /// Those whose stages differ.
 const METHODS: [MethodName; 3] = [MethodName::Fast, MethodName::Block, MethodName::Sgm];
 /// Width, height and disparities.

@@ -1,7 +1,5 @@
 //! How a column's candidates are a group of registers.
 
-use crate::matching::backend::work::PathWork;
-
 /// Bytes of a register that every core has at least (Zvl128b).
 const REGISTER: usize = 16;
 /// The most registers of a group.
@@ -18,12 +16,12 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    /// The columns of a row; none where they are too long.
+    /// Columns of so many bytes; none where that is too many.
     #[inline(always)]
-    pub fn of(work: &PathWork<'_>) -> Option<Self> {
+    pub fn of(stride: usize) -> Option<Self> {
         const NO_CARE: usize = 0b11 << 6;
-        let stride = work.stride;
         let registers = stride.div_ceil(REGISTER).next_power_of_two();
-        (registers <= MOST).then_some(Self { stride, vtype: NO_CARE | registers.trailing_zeros() as usize })
+        (stride > 0 && registers <= MOST)
+            .then_some(Self { stride, vtype: NO_CARE | registers.trailing_zeros() as usize })
     }
 }

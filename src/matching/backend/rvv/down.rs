@@ -73,7 +73,7 @@ unsafe fn walk(work: &mut PathWork<'_>, run: Run, changes: &[u16], columns: Colu
             "add {b}, {b}, {on}",
             "vaaddu.vv v8, v8, v16",
             least!("v8", "least"),
-            change!("step", "jump"),
+            change!("step", "jump", "changes"),
             "add {changes}, {changes}, {next}",
             step!("step", "jump"),
             "add {costs}, {costs}, {on}",

@@ -1,16 +1,10 @@
 //! What a pixel's cost compares: the census and the gradients of many pixels at a time.
 
+use super::census::{REACH, WIDE8, along_line, codes};
 use crate::matching::backend::portable::sgm::features::FeatureRows;
-use crate::matching::backend::portable::sgm::features_by_four::near;
 use crate::matching::memory::Rows5;
-use crate::matching::memory::slices::{part, part_mut};
-use crate::matching::memory::views::view;
+use crate::matching::memory::slices::part_mut;
 use core::arch::asm;
-
-/// Columns to each side that a code looks at.
-const REACH: usize = 4;
-/// Columns that [`REACH`] columns at an end of the line look at.
-const NEAR: usize = 3 * REACH;
 
 /// Features in vectors.
 pub(super) struct VectorRows;
@@ -21,22 +15,11 @@ impl FeatureRows for VectorRows {
     #[inline(always)]
     fn looks(lines: &Rows5<'_>, width: usize, gradient: u8, [along, across, census]: [&mut [u8]; 3]) {
         let count = census.len().min(width);
-        let [above2, above, here, below, below2] = *lines;
-        // The columns that see nothing outside the line, then those at its ends: of a short line all.
-        let inner = REACH..count.min(width.saturating_sub(REACH)).max(REACH);
-        codes([above2, here, below2], census.get_mut(inner.clone()).unwrap_or_default());
-        let places = [&mut *along, &mut *across].map(|row| row.get_mut(inner.clone()).unwrap_or_default());
-        gradients([above, here, below], gradient, places);
-        let (mut x, step) = (0, if width < NEAR { REACH } else { width - REACH });
-        while x < count {
-            let near = lines.map(|line| near(part(line, ..width), x));
-            let [above2, above, here, below, below2] = near.each_ref().map(|near| view(near));
-            let places = x..count.min(x + REACH);
-            codes([above2, here, below2], part_mut(census, places.clone()));
+        along_line(lines, width, count, |[above2, above, here, below, below2], places| {
+            codes::<WIDE8>([above2, here, below2], part_mut(census, places.clone()));
             let places = [&mut *along, &mut *across].map(|row| part_mut(row, places.clone()));
             gradients([above, here, below], gradient, places);
-            x += step;
-        }
+        });
     }
 
     /// Half of each number, of as many as both have.
@@ -108,66 +91,6 @@ impl FeatureRows for VectorRows {
                 out("v21") _, out("v22") _, out("v23") _, options(nostack),
             );
         }
-    }
-}
-
-/// The codes of as many columns as there are places, from the rows two above, here, and two below, each from
-/// [`REACH`] columns before the first on: 40 instructions for 64 pixels and more.
-#[inline(never)]
-fn codes(rows: [&[u8]; 3], out: &mut [u8]) {
-    let count = out.len();
-    if count == 0 || rows.iter().any(|row| row.len() < count + 2 * REACH) {
-        return;
-    }
-    let [above, here, below] = rows.map(<[u8]>::as_ptr);
-    // SAFETY: `count` bytes are written, and of each row as many and `REACH` more on both sides are read: each
-    // round takes as many as `vsetvli` says.
-    unsafe {
-        asm!(
-            ".macro compare row, column, bit",
-            ".if \\column",
-            "addi {beside}, \\row, \\column",
-            "vle8.v v16, ({beside})",
-            ".else",
-            "vle8.v v16, (\\row)",
-            ".endif",
-            "vmsltu.vv v0, v16, v8",
-            ".if \\bit < 16",
-            "vadd.vi v12, v12, \\bit, v0.t",
-            ".else",
-            "li {beside}, \\bit",
-            "vadd.vx v12, v12, {beside}, v0.t",
-            ".endif",
-            ".endm",
-            "2:",
-            // Lanes of no neighbour that is darker stay.
-            "vsetvli {at_once}, {count}, e8, m4, ta, mu",
-            "addi {beside}, {here}, {reach}",
-            "vle8.v v8, ({beside})",
-            "vmv.v.i v12, 0",
-            "compare {above}, 0, 1",
-            "compare {above}, 4, 2",
-            "compare {above}, 8, 4",
-            "compare {here}, 2, 8",
-            "compare {here}, 6, 16",
-            "compare {below}, 0, 32",
-            "compare {below}, 4, 64",
-            "compare {below}, 8, 128",
-            "vse8.v v12, ({out})",
-            "add {above}, {above}, {at_once}",
-            "add {here}, {here}, {at_once}",
-            "add {below}, {below}, {at_once}",
-            "add {out}, {out}, {at_once}",
-            "sub {count}, {count}, {at_once}",
-            "bnez {count}, 2b",
-            ".purgem compare",
-            at_once = out(reg) _, beside = out(reg) _, count = inout(reg) count => _,
-            above = inout(reg) above => _, here = inout(reg) here => _, below = inout(reg) below => _,
-            out = inout(reg) out.as_mut_ptr() => _, reach = const REACH,
-            out("v0") _, out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _,
-            out("v14") _, out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _,
-            options(nostack),
-        );
     }
 }
 

@@ -1,6 +1,7 @@
 //! The path from the right, added to the others, and the winner of each pixel.
 
 use super::columns::Columns;
+use super::rows::fill;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::winners::Winner;
 use core::arch::asm;
@@ -40,53 +41,16 @@ pub(super) fn left(
             "vmv.v.i v8, 0",
             "vmv.s.x v4, zero",
             "li {least}, 0",
-            "j 2f",
-            // The smallest disparity has the other side for what is below it, an only one itself.
-            "3:",
-            "mv {below}, {above}",
-            "bne {lane}, {first}, 5f",
-            "mv {below}, {best}",
-            "mv {above}, {best}",
-            "j 5f",
-            // The largest one has none above.
-            "4:",
-            "mv {above}, {below}",
-            "j 5f",
-            "2:",
-            change!("below", "above"),
+            winner_at_ends!(),
+            change!("below", "above", "second"),
             step!("below", "above"),
             "add {costs}, {costs}, {back}",
             least!("v8", "least"),
             "vle8.v v16, ({sums})",
             "add {sums}, {sums}, {back}",
             "vsaddu.vv v16, v16, v8",
-            "vse8.v v16, ({room})",
-            least!("v16", "best"),
-            // Of those with the least cost the last one, which has the smallest disparity.
-            "vmseq.vx v0, v16, {best}",
-            "vid.v v24",
-            "vredmaxu.vs v2, v24, v4, v0.t",
-            "vmv.x.s {lane}, v2",
-            "beqz {asked}, 6f",
-            "addi {below}, {lane}, -2",
-            "vsub.vx v24, v24, {below}",
-            "vmsgtu.vi v0, v24, 4",
-            "vredminu.vs v2, v16, v1, v0.t",
-            "vmv.x.s {below}, v2",
-            "sb {below}, 0({changes})",
-            "6:",
-            "addi {changes}, {changes}, -2",
-            "add {above}, {room}, {lane}",
-            "lbu {below}, 1({above})",
-            "lbu {above}, -1({above})",
-            "beq {lane}, {last}, 3b",
-            "beq {lane}, {first}, 4b",
-            "5:",
-            "sb {below}, 0({winners})",
-            "sb {best}, 1({winners})",
-            "sb {above}, 2({winners})",
-            "sub {lane}, {last}, {lane}",
-            "sb {lane}, 3({winners})",
+            winner!(),
+            "addi {second}, {second}, -2",
             "addi {winners}, {winners}, -4",
             "addi {count}, {count}, -1",
             // The first columns have fewer candidates.
@@ -96,7 +60,7 @@ pub(super) fn left(
             count = inout(reg) count => _, stride = in(reg) stride, vtype = inout(reg) vtype => _,
             costs = inout(reg) work.costs.as_ptr().add(x * stride) => _,
             sums = inout(reg) work.sums.as_ptr().add(x * stride) => _,
-            changes = inout(reg) changes.as_mut_ptr().add(x + 1) => _,
+            second = inout(reg) changes.as_mut_ptr().add(x + 1) => _,
             winners = inout(reg) winners.as_mut_ptr().add(x) => _,
             room = in(reg) room.as_mut_ptr().add(1), far = in(reg) super::far(work.penalties),
             asked = in(reg) u32::from(wants_second), disparities = in(reg) disparities,
@@ -121,21 +85,6 @@ fn close(work: &mut PathWork<'_>, begin: usize, columns: Columns) {
         if searched == stride {
             break;
         }
-        fill(column.get_mut(..stride - searched).unwrap_or_default());
-    }
-}
-
-/// Makes some bytes, as many as a group of eight registers holds at most, the most that there is.
-fn fill(lanes: &mut [u8]) {
-    // SAFETY: it writes so many bytes.
-    unsafe {
-        asm!(
-            "vsetvli zero, {count}, e8, m8, ta, ma",
-            "vmv.v.i v8, -1",
-            "vse8.v v8, ({lanes})",
-            count = in(reg) lanes.len(), lanes = in(reg) lanes.as_mut_ptr(),
-            out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _, out("v14") _,
-            out("v15") _, options(nostack),
-        );
+        fill(column.get_mut(..stride - searched).unwrap_or_default(), u8::MAX);
     }
 }

@@ -1,21 +1,29 @@
-//! Costs along paths in the vectors of a 32-bit RISC-V core (Zve32x), in assembly; all else is portable.
-//! Lanes run over the disparities of one pixel, the largest first, as in the vectors of a desktop: a
-//! pixel's candidates stand in memory as they do in the right image.
+//! The rows in the vectors of a 32-bit RISC-V core (Zve32x), in assembly; the stages behind winners are
+//! portable. Lanes run over the disparities of one pixel, the largest first: so a pixel's candidates stand in
+//! memory as they do in the right image.
 //!
 //! One instruction works on all candidates of a pixel: a column of up to 128 is a group of as many registers
 //! as it takes where one has 16 bytes ([`Columns`]), which every core has that the crate is compiled for. The
-//! code is the same for any number of candidates. More than 128 of them are worked on in words.
+//! code is the same for any number of candidates. Where there are more, `any` has windows, and costs along
+//! paths are worked on in words.
 //!
-//! * `features`: what is compared. `cost`: what pixels differ by; `edges`: averaged within edges.
+//! * `rows`: bytes filled and copied. `census`: the codes.
+//! * `windows`: sums of columns and windows, and their winners.
+//! * `features`: what is compared along paths. `cost`: what pixels differ by; `edges`: averaged within edges.
 //! * `changes`: what paths pay at each pixel. `down`, `right`, `left`: the paths, the last one with the
 //!   winners.
+//! * `step`, `winner`: pieces of the assembly.
 //!
 //! Of the stages around it the compiler makes vectors where it finds that they gain.
 #![allow(unsafe_code)]
 
 #[macro_use]
 mod step;
+#[macro_use]
+mod winner;
 
+mod any;
+mod census;
 mod changes;
 mod columns;
 mod cost;
@@ -24,11 +32,13 @@ mod edges;
 mod features;
 mod left;
 mod right;
+mod rows;
+mod windows;
 
 use super::isa::{Isa, sole_kernel};
-use super::parameters::SgmParameters;
+use super::parameters::{SgmParameters, WindowParameters};
 use super::portable::sgm;
-use super::work::{CostWork, EdgeWork, Guide, PathWork};
+use super::work::{CensusWork, CostWork, EdgeWork, Guide, PathWork, WindowWork};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::split_mut;
 use crate::matching::memory::views::view_mut;
@@ -36,6 +46,7 @@ use crate::matching::memory::winners::Select;
 use crate::matching::penalties::Penalties;
 use columns::Columns;
 use features::VectorRows;
+use rows::fill;
 
 pub(in crate::matching) use super::plain::{BY_CAPACITY, CODES_SHARE_A_BYTE, columns_begin};
 
@@ -51,8 +62,26 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
+    fn census<P: WindowParameters>(self, work: CensusWork<'_>) {
+        census::census::<P>(work);
+    }
+
+    #[inline(always)]
+    fn window<P: WindowParameters, const MOST: usize>(
+        self,
+        work: WindowWork<'_>,
+        select: Option<Select<'_>>,
+    ) {
+        match Columns::of(work.stride) {
+            Some(columns) => windows::window::<P>(work, select, columns),
+            None if MOST == 0 => any::window::<P>(work, select),
+            None => {}
+        }
+    }
+
+    #[inline(always)]
     fn sgm_cost<P: SgmParameters, const MOST: usize>(self, work: &mut PathWork<'_>, row: CostWork<'_>) {
-        match Columns::of(work) {
+        match Columns::of(work.stride) {
             Some(columns) => enter::<P>(work, row, columns),
             None if MOST == 0 => sgm::cost_in_words::<P, 0>(work, row),
             None => {}
@@ -61,7 +90,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
-        match Columns::of(work) {
+        match Columns::of(work.stride) {
             Some(columns) => edges::within_edges(work, edges, columns),
             None if MOST == 0 => sgm::within_edges_in_words::<0>(work, edges),
             None => {}
@@ -70,7 +99,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn sgm_select<const MOST: usize>(self, work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>) {
-        match Columns::of(work) {
+        match Columns::of(work.stride) {
             Some(columns) => self::select(work, guide, select, columns),
             None if MOST == 0 => sgm::select_in_words::<0>(work, guide, select),
             None => {}
@@ -87,7 +116,7 @@ fn far(penalties: &Penalties) -> u32 {
 #[inline(never)]
 fn enter<S: SgmParameters>(work: &mut PathWork<'_>, row: CostWork<'_>, columns: Columns) {
     if row.is_first {
-        work.costs.fill(0);
+        fill(work.costs, 0);
     }
     if let Some(features) = sgm::features::of::<VectorRows, S>(work, row.lines, row.workspace) {
         cost::enter::<S>(work, &features, columns);

@@ -23,7 +23,7 @@ pub(super) fn right(work: &mut PathWork<'_>, row: usize, changes: &[u16], column
             "vmv.v.i v8, 0",
             "li {least}, 0",
             "2:",
-            change!("step", "jump"),
+            change!("step", "jump", "changes"),
             "addi {changes}, {changes}, 2",
             step!("step", "jump"),
             "add {costs}, {costs}, {stride}",

@@ -34,7 +34,28 @@ macro_rules! least {
 
 /// What a step and a jump cost at the next pixel.
 macro_rules! change {
-    ($step:literal, $jump:literal) => {
-        concat!("lhu {", $step, "}, 0({changes})\n", "srli {", $jump, "}, {", $step, "}, 8")
+    ($step:literal, $jump:literal, $at:literal) => {
+        concat!("lhu {", $step, "}, 0({", $at, "})\n", "srli {", $jump, "}, {", $step, "}, 8")
+    };
+}
+
+/// How many bits of the codes in `v16` and of a code differ: of pairs, of fours, and of all.
+macro_rules! bits_apart {
+    ($code:literal) => {
+        concat!(
+            "vxor.vx v16, v16, {",
+            $code,
+            "}\n",
+            "vsrl.vi v24, v16, 1\n",
+            "vand.vx v24, v24, {odd}\n",
+            "vsub.vv v16, v16, v24\n",
+            "vsrl.vi v24, v16, 2\n",
+            "vand.vx v24, v24, {pairs}\n",
+            "vand.vx v16, v16, {pairs}\n",
+            "vadd.vv v16, v16, v24\n",
+            "vsrl.vi v24, v16, 4\n",
+            "vadd.vv v16, v16, v24\n",
+            "vand.vi v16, v16, 15"
+        )
     };
 }

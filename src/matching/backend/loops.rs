@@ -4,7 +4,7 @@ use crate::matching::memory::views::{Plain, view, view_mut};
 use crate::units::Disparity;
 
 /// Whether this is a microcontroller with vectors, of which the compiler makes use.
-pub(in crate::matching) const HAS_VECTORS: bool = cfg!(stereopsis_vectors);
+pub(in crate::matching) const HAS_VECTORS: bool = cfg!(any(stereopsis_vectors, stereopsis_rvv));
 
 /// Whether the compiler is kept from writing loops out, as on all 32-bit cores. A desktop looks at many
 /// pixels at once instead.

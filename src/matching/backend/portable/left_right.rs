@@ -1,7 +1,7 @@
 //! The left-right check and the sub-pixel fit, pixel by pixel.
 
 use super::{consistency, subpixel};
-use crate::matching::backend::loops::{fill_bytes, keep_loop};
+use crate::matching::backend::loops::{fill_bytes, keep_loop, keep_scalar_loop};
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::{AnswerWork, Rules};
 use crate::matching::memory::record::WinnerRecord;
@@ -57,7 +57,7 @@ pub(in crate::matching::backend) fn answer<S: MethodParameters>(
     flags: &mut [PixelFlags],
 ) {
     for (x, ((answer, flags), &winner)) in answers.iter_mut().zip(flags).zip(winners).enumerate() {
-        keep_loop();
+        keep_scalar_loop();
         let kept = consistency::kept(x, winner.disparity() as u8, right);
         (*answer, *flags) = answer_of::<S>(winner, kept, *flags, rules);
     }

@@ -9,9 +9,10 @@
 //!
 //! * `rows`: bytes filled and copied. `census`: the codes.
 //! * `windows`: sums of columns and windows, and their winners.
-//! * `features`: what is compared along paths. `cost`: what pixels differ by; `edges`: averaged within edges.
+//! * `features`: what is compared along paths. `cost`: what pixels differ by; `within_edges`: averaged so.
 //! * `changes`: what paths pay at each pixel. `down`, `right`, `left`: the paths, the last one with the
 //!   winners.
+//! * `edges`: where brightness changes. `speckle`: support counted.
 //! * `step`, `winner`: pieces of the assembly.
 //!
 //! Of the stages around it the compiler makes vectors where it finds that they gain.
@@ -33,17 +34,20 @@ mod features;
 mod left;
 mod right;
 mod rows;
+mod speckle;
 mod windows;
+mod within_edges;
 
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{SgmParameters, WindowParameters};
-use super::portable::sgm;
-use super::work::{CensusWork, CostWork, EdgeWork, Guide, PathWork, WindowWork};
+use super::portable::{self, sgm};
+use super::work::{CensusWork, CostWork, EdgeWork, Guide, PathWork, SpeckleWork, WindowWork};
 use crate::matching::kernel::Kernel;
-use crate::matching::memory::slices::split_mut;
+use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use crate::matching::penalties::Penalties;
+use crate::units::Disparity;
 use columns::Columns;
 use features::VectorRows;
 use rows::fill;
@@ -91,7 +95,7 @@ impl Isa for Backend {
     #[inline(always)]
     fn sgm_within_edges<const MOST: usize>(self, work: &mut PathWork<'_>, edges: EdgeWork<'_>) {
         match Columns::of(work.stride) {
-            Some(columns) => edges::within_edges(work, edges, columns),
+            Some(columns) => within_edges::within_edges(work, edges, columns),
             None if MOST == 0 => sgm::within_edges_in_words::<0>(work, edges),
             None => {}
         }
@@ -105,6 +109,26 @@ impl Isa for Backend {
             None => {}
         }
     }
+
+    #[inline(always)]
+    fn median(self, rows: [&[Disparity]; 3], out: &mut [Disparity]) {
+        median(rows, out);
+    }
+
+    #[inline(always)]
+    fn speckle(self, work: SpeckleWork<'_>) {
+        speckle::speckle(work);
+    }
+
+    #[inline(always)]
+    fn push_edges(self, edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
+        edges::push(edges, lines, least);
+    }
+}
+
+#[inline(never)]
+fn median(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
+    portable::median::median_in_rows(rows, out);
 }
 
 /// A cost that no path comes from, nor from a step beside it: more than any path costs (`Penalties::check`).
@@ -143,11 +167,11 @@ fn select(work: &mut PathWork<'_>, guide: Guide<'_>, select: Select<'_>, columns
     }
     right::right(work, guide.row, along, columns);
     left::left(work, along, view_mut(room), winners, unique.is_asked(), columns);
-    let begin = work.min_disparity.min(width);
+    let begin = work.min_disparity;
     if unique.is_asked() {
         let mut check = unique.checks_from(begin);
-        for (winner, second) in winners.iter().zip(along.iter().skip(1)).skip(begin) {
-            check(winner.cost(), &mut || *second as u8);
+        for (winner, &second) in part(winners, begin..).iter().zip(part(along, begin + 1..)) {
+            check(winner.cost(), &mut || second as u8);
         }
     }
 }

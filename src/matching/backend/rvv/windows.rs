@@ -5,7 +5,7 @@ use super::rows::with_more_before;
 use crate::matching::backend::parameters::WindowParameters;
 use crate::matching::backend::work::WindowWork;
 use crate::matching::memory::layout::OUTSIDE;
-use crate::matching::memory::slices::{part_mut, split_mut};
+use crate::matching::memory::slices::{part, part_mut, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
 use core::arch::asm;
@@ -151,7 +151,7 @@ fn winners<P: WindowParameters>(
     }
     if unique.is_asked() {
         let mut check = unique.checks_from(begin);
-        for (winner, &second) in winners.iter().zip(&*seconds).skip(begin) {
+        for (winner, &second) in part(winners, begin..).iter().zip(part(seconds, begin..)) {
             check(winner.cost(), &mut || second);
         }
     }

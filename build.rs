@@ -28,6 +28,10 @@ fn main() {
     if is("CARGO_CFG_TARGET_ARCH", "riscv32") && has_rvv(&flags) && !flags.contains("stereopsis_portable") {
         println!("cargo::rustc-cfg=stereopsis_rvv");
     }
+    if is("CARGO_CFG_TARGET_ENDIAN", "big") {
+        let why = "words of memory stand for rows of bytes";
+        println!("cargo::error=stereopsis is for little-endian processors: {why}");
+    }
     if has_simd() {
         println!("cargo::rustc-cfg=stereopsis_simd");
     }
@@ -44,14 +48,11 @@ fn has_products() -> bool {
     is("CARGO_CFG_TARGET_ARCH", "riscv32") && has_m && !has_few
 }
 
-/// Whether the flags name vectors of RISC-V, with registers of 16 bytes at least. Rust's stable compiler knows them
-/// by `-C target-feature`, and says so to no crate.
+/// Whether the flags name vectors of RISC-V, with registers of 16 bytes at least. Rust's stable compiler
+/// knows them by `-C target-feature`, and says so to no crate.
 fn has_rvv(flags: &str) -> bool {
-    let named = |feature: &str| {
-        flags
-            .split(['\u{1f}', ',', '='])
-            .any(|word| word.trim_start_matches('+') == feature && word.starts_with('+'))
-    };
+    let named =
+        |feature: &str| flags.split(['\u{1f}', ',', '=']).any(|word| word.strip_prefix('+') == Some(feature));
     let has_vectors = ["zve32x", "zve32f", "zve64x", "zve64f", "zve64d"].into_iter().any(named);
     let is_long = [128, 256, 512, 1024].into_iter().any(|bits| named(&format!("zvl{bits}b")));
     named("v") || has_vectors && is_long

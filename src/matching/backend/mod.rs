@@ -30,9 +30,6 @@ mod rvv;
 #[cfg(stereopsis_simd)]
 mod simd;
 
-#[cfg(target_endian = "big")]
-compile_error!("stereopsis is for little-endian processors: words of memory stand for rows of bytes");
-
 #[cfg(stereopsis_dsp)]
 use armv7em as target;
 #[cfg(stereopsis_vectors)]

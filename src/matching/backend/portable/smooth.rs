@@ -1,7 +1,7 @@
 //! Answers averaged within their surface, pixel by pixel: one pass to the right that counts and adds up, one
 //! back that averages.
 
-use crate::matching::backend::loops::keep_loop;
+use crate::matching::backend::loops::{KEEPS_LOOPS, keep_loop};
 use crate::matching::backend::work::SmoothWork;
 use crate::matching::config::Checks;
 use crate::units::Disparity;
@@ -33,12 +33,12 @@ pub(in crate::matching) const MARGIN: usize = 2 * Checks::MOST_SMOOTHING as usiz
 /// Whether two answers are of one surface; `NONE`s are, and are far from every answer (Config::check).
 #[inline(always)]
 pub(in crate::matching::backend) fn of_one(a: u16, b: u16, step: Disparity) -> bool {
-    if cfg!(stereopsis_simd) {
-        // Half-words stay half-words.
-        a.abs_diff(b) <= step.raw()
-    } else {
+    if KEEPS_LOOPS {
         let step = u32::from(step.raw());
         u32::from(a).wrapping_sub(u32::from(b)).wrapping_add(step) <= 2 * step
+    } else {
+        // Half-words stay half-words.
+        a.abs_diff(b) <= step.raw()
     }
 }
 

@@ -67,8 +67,8 @@ pub(super) fn codes<const NEIGHBOURS: u32>(rows: [&[u8]; 3], out: &mut [u8]) {
         return;
     }
     let [above, here, below] = rows.map(<[u8]>::as_ptr);
-    // SAFETY: `count` bytes are written, and of each row as many and `REACH` more on both sides are read: each
-    // round takes as many as `vsetvli` says.
+    // SAFETY: `count` bytes are written, and of each row as many and `REACH` more on both sides are read:
+    // each round takes as many as `vsetvli` says.
     unsafe {
         asm!(
             ".macro compare row, column, bit",

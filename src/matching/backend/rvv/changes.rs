@@ -3,8 +3,8 @@
 use crate::matching::penalties::Penalties;
 use core::arch::asm;
 
-/// The step of each pixel, and above it the jump, from the brightness `here` and where the path comes from: 21
-/// instructions for 32 pixels and more.
+/// The step of each pixel, and above it the jump, from the brightness `here` and where the path comes
+/// from: 21 instructions for 32 pixels and more.
 #[inline(never)]
 pub(super) fn changes(here: &[u8], from: &[u8], penalties: &Penalties, out: &mut [u16]) {
     let count = out.len();
@@ -13,8 +13,8 @@ pub(super) fn changes(here: &[u8], from: &[u8], penalties: &Penalties, out: &mut
     }
     let [little, more, much] = penalties.changes();
     let [first, second] = penalties.edges;
-    // SAFETY: `count` bytes are read of both rows, and so many pairs of bytes are written: each round takes as
-    // many as `vsetvli` says.
+    // SAFETY: `count` bytes are read of both rows, and so many pairs of bytes are written: each round
+    // takes as many as `vsetvli` says.
     unsafe {
         asm!(
             "2:",

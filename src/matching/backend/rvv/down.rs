@@ -4,6 +4,7 @@
 //! right, each column two places before the one that it replaces, and back: so what is replaced is done with.
 
 use super::columns::Columns;
+use super::step::far;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::layout::COLUMNS_OFF;
 use core::arch::asm;
@@ -85,7 +86,7 @@ unsafe fn walk(work: &mut PathWork<'_>, run: Run, changes: &[u16], columns: Colu
             a = inout(reg) top.add(a * stride) => _, b = inout(reg) top.add(b * stride) => _,
             to = inout(reg) top.add(to * stride) => _, on = in(reg) on, next = in(reg) next,
             costs = inout(reg) work.costs.as_ptr().add(x * stride) => _,
-            changes = inout(reg) changes.as_ptr().add(x) => _, far = in(reg) super::far(work.penalties),
+            changes = inout(reg) changes.as_ptr().add(x) => _, far = in(reg) far(work.penalties),
             least = out(reg) _, step = out(reg) _, jump = out(reg) _,
             out("v1") _, out("v2") _,
             out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _, out("v14") _,

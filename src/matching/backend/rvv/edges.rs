@@ -4,16 +4,16 @@ use crate::matching::backend::portable::edges::push_at;
 use crate::matching::backend::work::FatteningWork;
 use core::arch::asm;
 
-/// [`Isa::push_edges`](crate::matching::backend::Isa::push_edges) in vectors: 31 instructions for 32 pixels and
-/// more.
+/// [`Isa::push_edges`](crate::matching::backend::Isa::push_edges) in vectors: 31 instructions for 32
+/// pixels and more.
 #[inline(never)]
 pub(super) fn push(edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
     let count = edges.len();
     let last = count.saturating_sub(1);
     if last > 1 && lines.iter().all(|line| line.len() >= count) {
         let [above, line, below] = lines.map(<[u8]>::as_ptr);
-        // SAFETY: there are as many columns in all rows, and all but the two at the ends are written: each round
-        // takes as many as `vsetvli` says, and reads as many and one more on both sides.
+        // SAFETY: there are as many columns in all rows, and all but the two at the ends are written: each
+        // round takes as many as `vsetvli` says, and reads as many and one more on both sides.
         unsafe {
             asm!(
                 // The sums down the columns, the middle one twice.

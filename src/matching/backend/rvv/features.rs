@@ -43,8 +43,8 @@ impl FeatureRows for VectorRows {
                 "bnez {count}, 2b",
                 at_once = out(reg) _, count = inout(reg) count => _, from = inout(reg) numbers.as_ptr() => _,
                 to = inout(reg) halves.as_mut_ptr() => _,
-                out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _, out("v14") _,
-                out("v15") _, options(nostack),
+                out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _,
+                out("v14") _, out("v15") _, options(nostack),
             );
         }
     }
@@ -56,8 +56,8 @@ impl FeatureRows for VectorRows {
         if count == 0 {
             return;
         }
-        // SAFETY: the numbers between the first and the last are `count`; those are written, and read with the
-        // two: each round takes as many as `vsetvli` says.
+        // SAFETY: the numbers between the first and the last are `count`; those are written, and read with
+        // the two: each round takes as many as `vsetvli` says.
         unsafe {
             asm!(
                 // Averages are rounded down.
@@ -86,16 +86,16 @@ impl FeatureRows for VectorRows {
                 numbers = inout(reg) numbers.as_ptr() => _,
                 least = inout(reg) least.as_mut_ptr().add(1) => _,
                 greatest = inout(reg) greatest.as_mut_ptr().add(1) => _,
-                out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _, out("v14") _,
-                out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _, out("v20") _,
+                out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _,
+                out("v14") _, out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _, out("v20") _,
                 out("v21") _, out("v22") _, out("v23") _, options(nostack),
             );
         }
     }
 }
 
-/// The gradients along the line and across it, cut off at `most` to each side, plus `most`, likewise, from the
-/// rows above, here and below: 51 instructions for 32 pixels and more.
+/// The gradients along the line and across it, cut off at `most` to each side, plus `most`, likewise, from
+/// the rows above, here and below: 51 instructions for 32 pixels and more.
 #[inline(never)]
 fn gradients(rows: [&[u8]; 3], most: u8, [along, across]: [&mut [u8]; 2]) {
     let count = along.len();

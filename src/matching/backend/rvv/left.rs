@@ -2,6 +2,7 @@
 
 use super::columns::Columns;
 use super::rows::fill;
+use super::step::far;
 use crate::matching::backend::work::PathWork;
 use crate::matching::memory::winners::Winner;
 use core::arch::asm;
@@ -62,7 +63,7 @@ pub(super) fn left(
             sums = inout(reg) work.sums.as_ptr().add(x * stride) => _,
             second = inout(reg) changes.as_mut_ptr().add(x + 1) => _,
             winners = inout(reg) winners.as_mut_ptr().add(x) => _,
-            room = in(reg) room.as_mut_ptr().add(1), far = in(reg) super::far(work.penalties),
+            room = in(reg) room.as_mut_ptr().add(1), far = in(reg) far(work.penalties),
             asked = in(reg) u32::from(wants_second), disparities = in(reg) disparities,
             first = inout(reg) stride - disparities.min(count) => _, last = in(reg) stride - 1,
             back = out(reg) _, least = out(reg) _, below = out(reg) _, above = out(reg) _, best = out(reg) _,

@@ -46,7 +46,6 @@ use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::view_mut;
 use crate::matching::memory::winners::Select;
-use crate::matching::penalties::Penalties;
 use crate::units::Disparity;
 use columns::Columns;
 use features::VectorRows;
@@ -129,11 +128,6 @@ impl Isa for Backend {
 #[inline(never)]
 fn median(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
     portable::median::median_in_rows(rows, out);
-}
-
-/// A cost that no path comes from, nor from a step beside it: more than any path costs (`Penalties::check`).
-fn far(penalties: &Penalties) -> u32 {
-    127 - u32::from(penalties.step[0])
 }
 
 /// Adds a row to the costs; the first row of a frame to none.

@@ -1,6 +1,7 @@
 //! The path from the left, and its sum with the one from above.
 
 use super::columns::Columns;
+use super::step::far;
 use crate::matching::backend::work::PathWork;
 use core::arch::asm;
 
@@ -38,7 +39,7 @@ pub(super) fn right(work: &mut PathWork<'_>, row: usize, changes: &[u16], column
             width = inout(reg) width => _, stride = in(reg) stride, vtype = in(reg) vtype,
             costs = inout(reg) work.costs.as_ptr() => _, sums = inout(reg) work.sums.as_mut_ptr() => _,
             top = inout(reg) work.top.as_ptr().add(first * stride) => _,
-            changes = inout(reg) changes.as_ptr() => _, far = in(reg) super::far(work.penalties),
+            changes = inout(reg) changes.as_ptr() => _, far = in(reg) far(work.penalties),
             least = out(reg) _, step = out(reg) _, jump = out(reg) _,
             out("v1") _, out("v2") _,
             out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _, out("v14") _,

@@ -52,8 +52,8 @@ pub(super) fn copy(from: &[u8], to: &mut [u8]) {
     }
 }
 
-/// Codes of a row with more before them: column x is compared with `stride` of them from x on. The first one is
-/// repeated for those that lie left of the image.
+/// Codes of a row with more before them: column x is compared with `stride` of them from x on. The first
+/// one is repeated for those that lie left of the image.
 pub(super) fn with_more_before<'a>(
     codes: &[u8],
     min_disparity: usize,

@@ -7,8 +7,8 @@ use crate::matching::memory::rings::LOOK_AHEAD;
 use crate::units::PixelFlags;
 use core::arch::asm;
 
-/// [`Isa::speckle`](crate::matching::backend::Isa::speckle) in vectors, which keeps of a column what the portable
-/// one keeps: 46 instructions for 32 answers and more.
+/// [`Isa::speckle`](crate::matching::backend::Isa::speckle) in vectors, which keeps of a column what the
+/// portable one keeps: 46 instructions for 32 answers and more.
 #[inline(never)]
 pub(super) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
@@ -85,7 +85,8 @@ pub(super) fn speckle(work: SpeckleWork<'_>) {
             step = in(reg) u32::from(step.raw()), pixels = in(reg) u32::from(pixels),
             run = in(reg) if run == 0 { u32::from(u16::MAX) } else { run.into() },
             bits_of_byte = in(reg) 0xff, moved = in(reg) 0b1_1110_1110, rows = const ROWS,
-            enough = in(reg) 1 << (ROWS + LOOK_AHEAD), speckle = in(reg) u32::from(PixelFlags::SPECKLE.bits()),
+            enough = in(reg) 1 << (ROWS + LOOK_AHEAD),
+            speckle = in(reg) u32::from(PixelFlags::SPECKLE.bits()),
             out("v0") _, out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _,
             out("v14") _, out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _, out("v20") _,
             out("v21") _, out("v22") _, out("v23") _, out("v24") _, out("v25") _, out("v26") _, out("v27") _,

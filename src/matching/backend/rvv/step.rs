@@ -1,10 +1,18 @@
 //! A path's step.
 
+use crate::matching::penalties::Penalties;
+
+/// A cost that no path comes from, nor from a step beside it: more than any path costs (`Penalties::check`).
+pub(super) fn far(penalties: &Penalties) -> u32 {
+    127 - u32::from(penalties.step[0])
+}
+
 /// Moves the path in `v8` on to a pixel: `least` is the least that it costs, `step` and `jump` what changes
 /// cost there, and at `costs` stand the pixel's. Nine instructions.
 ///
-/// With m the least that it costs to come from near, it is `min(m - least, jump) + cost`. Beside the ends of a
-/// column is `far`, a cost that no path comes from: with a step it is 127 at most, more than any path costs.
+/// With m the least that it costs to come from near, it is `min(m - least, jump) + cost`. Beside the ends
+/// of a column is `far`, a cost that no path comes from: with a step it is 127 at most, more than any path
+/// costs.
 macro_rules! step {
     ($step:literal, $jump:literal) => {
         concat!(

@@ -32,8 +32,8 @@ pub(super) fn window<P: WindowParameters>(
     }
 }
 
-/// Adds to each column how many bits of its code and of those that it is compared with differ, or takes that off:
-/// 23 instructions.
+/// Adds to each column how many bits of its code and of those that it is compared with differ, or takes
+/// that off: 23 instructions.
 fn move_columns([left, right]: [&[u8]; 2], sign: i32, sums: &mut [u8], columns: Columns) {
     let Columns { stride, vtype } = columns;
     let width = left.len();
@@ -88,9 +88,9 @@ fn winners<P: WindowParameters>(
         return;
     }
     let column = |x: usize| sums.as_ptr().wrapping_add((OUTSIDE + x) * stride);
-    // SAFETY: the lengths asked for above are what is read and written, of the columns from `begin` on, one at
-    // least, and of up to `OUTSIDE` to both sides. A winner stands in one of the lanes, and beside each lane
-    // is a byte of the room.
+    // SAFETY: the lengths asked for above are what is read and written, of the columns from `begin` on,
+    // one at least, and of up to `OUTSIDE` to both sides. A winner stands in one of the lanes, and beside
+    // each lane is a byte of the room.
     unsafe {
         asm!(
             "vsetvl zero, {stride}, {vtype}",

@@ -1,7 +1,7 @@
 //! The winner of a pixel, of the costs of all its candidates.
 
-/// Finds the winner of the costs in `v16`, and puts it in its place; they are put in the `room`, which has a byte
-/// more at both ends.
+/// Finds the winner of the costs in `v16`, and puts it in its place; they are put in the `room`, which has
+/// a byte more at both ends.
 ///
 /// * The loop begins at `2`; `first` is the first lane that has a candidate, `last` the last one, whose
 ///   disparity is the smallest. Lanes before the first have 255.

@@ -1,7 +1,7 @@
 // What the settings take of a microcontroller: the figures of `stereo plan`, which are in the page's data.
 
-// Bytes of RAM of a pipeline, at most: exact, for they grow with the width, the disparities in steps of 16,
-// and the product of both, and rows of no whole words have some bytes between them.
+// Bytes of RAM that a pipeline takes at most: they grow with the width, the disparities in steps of 16, and
+// the product of both, and rows of no whole words have some bytes between them.
 function ramBytes(method, width, disparities) {
   const [product, perColumn, perDisparity, fixed, padding] = DATA.ram[METHODS[method]];
   const lanes = 16 * Math.ceil(disparities / 16);
@@ -22,7 +22,7 @@ function showWork({ settings, planes }) {
   const bytes = ramBytes(method, planes.width, disparities);
   const size = `${planes.width} x ${planes.height} with ${disparities} disparities`;
   byId("memory").textContent = `${METHODS[method]} at ${size}: ${bytes} bytes of RAM `
-    + `(${(bytes / 1024).toFixed(1)} KB) on every core.`;
+    + `(${(bytes / 1024).toFixed(1)} KB) at most, on any core.`;
   const rows = DATA.cores.map(([core, mhz]) => {
     const count = instructions(core, method, planes.width * planes.height, disparities);
     const row = make("tr");

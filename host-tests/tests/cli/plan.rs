@@ -2,6 +2,7 @@
 
 use super::support::{Bench, stereo, text};
 use serde_json::Value;
+use stereopsis_host::run::MethodName;
 
 /// 420 px x 60 mm: 25.2 px m.
 const RIG: [&str; 9] =
@@ -41,12 +42,42 @@ fn work_is_what_was_measured() {
     // Of 320x240 pixels and 64 disparities, which docs/performance.md has.
     let page = include_str!("../../../docs/performance.md");
     let line = page.split("| m4 | `sgm` | 320x240 | 64 | ").nth(1).expect("the line");
-    let instructions: f64 = line.split(' ').next().and_then(|n| n.parse().ok()).expect("a number");
+    let mut cells = line.split(" | ").map(|cell| cell.parse::<f64>().expect("a number"));
+    let instructions = cells.next().expect("instructions");
     assert!((work["instructions"].as_f64().expect("a number") - instructions).abs() < 1.0);
     let per_second = work["frames_per_s"].as_f64().expect("a number");
     assert!((per_second * instructions - 1e8).abs() < 1e3);
+    // After the instructions for an evaluation, the program's static RAM.
+    assert_eq!(work["ram_bytes"].as_f64(), cells.nth(1));
+    assert_eq!(work["ram_is_measured"], true);
+}
+
+#[test]
+fn memory_that_was_not_measured_is_said_to_be_a_bound() {
+    let mut rig = RIG.to_vec();
+    rig[6] = "324x240";
+    let run = stereo(rig.iter().chain(&["--farthest", "5", "--core", "m4", "--method", "sgm", "--json"]));
+    let plan: Value = serde_json::from_slice(&run.stdout).expect("JSON");
     // What the matcher takes at most, and ten lines and some of the cameras.
-    assert_eq!(work["ram_bytes"], 76_096 + 10 * 320 + 48);
+    assert_eq!(plan["work"][0]["ram_bytes"], MethodName::Sgm.state_bytes(324, 64) + 10 * 324 + 48);
+    assert_eq!(plan["work"][0]["ram_is_measured"], false);
+}
+
+#[test]
+fn memory_that_was_measured_is_enough() {
+    // 210 px x 60 mm at 0.45 m are 28 px: 32 disparities of 160 columns, where firmware for the M3 was
+    // measured to take 16524 bytes and 1240 of stack at most, and firmware for the M4 18332.
+    let small = ["--size", "160x120", "--focal-px", "210", "--nearest", "0.45", "--farthest", "4"];
+    let small = [&small[..], &["--method", "fast", "--ram-kb", "18"]].concat();
+    let plan = |core: &str| {
+        let run = stereo(["plan", "--baseline-mm", "60", "--core", core].iter().chain(&small));
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        text(&run.stdout)
+    };
+    let m3 = plan("m3");
+    assert!(m3.contains("limit        none") && m3.contains("RAM as measured, of the"), "{m3}");
+    let m4 = plan("m4");
+    assert!(m4.contains("limit        the memory: fast takes 19532 bytes of RAM with its stack"), "{m4}");
 }
 
 #[test]
@@ -61,6 +92,7 @@ fn the_three_ways_to_say_a_focal_length_agree() {
     assert_eq!(focal(&["--focal-px", "160"]), 160.0);
     assert!((focal(&["--focal-mm", "1.44", "--sensor-width-mm", "2.88"]) - 160.0).abs() < 1e-9);
     assert!((focal(&["--field-of-view", "90"]) - 160.0).abs() < 1e-9);
+    assert!((focal(&["--fov", "90"]) - 160.0).abs() < 1e-9);
 }
 
 #[test]

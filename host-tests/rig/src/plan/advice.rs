@@ -10,9 +10,10 @@ const FASTEST_MHZ: f64 = 1000.0;
 /// What is wanted and not had, and what would help.
 pub fn of(plan: &Plan, tables: &Tables) -> (Vec<String>, Vec<String>) {
     let (mut limits, mut changes) = (Vec::new(), Vec::new());
-    for (limit, help) in [nearest(plan), farthest(plan), accuracy(plan), memory(plan), speed(plan, tables)]
-        .into_iter()
-        .flatten()
+    for (limit, help) in
+        [nearest(plan), farthest(plan), accuracy(plan), memory(plan, tables), speed(plan, tables)]
+            .into_iter()
+            .flatten()
     {
         limits.push(limit);
         changes.extend(help);
@@ -115,7 +116,7 @@ fn helped(plan: &Plan, rig: &Rig, what: String) -> String {
 }
 
 /// Whether a method's memory is there.
-fn memory(plan: &Plan) -> Found {
+fn memory(plan: &Plan, tables: &Tables) -> Found {
     let most = plan.wanted.ram_bytes?;
     let takes = |work: &super::Work| work.ram_bytes + work.stack_bytes as usize;
     let least = plan.work.iter().min_by_key(|work| takes(work))?;
@@ -123,13 +124,17 @@ fn memory(plan: &Plan) -> Found {
         return None;
     }
     let limit = format!(
-        "the memory: {} takes {} bytes of RAM with its stack, where {most} are there",
+        "the memory: {} takes {}{} bytes of RAM with its stack, where {most} are there",
         least.method,
+        if least.ram_is_measured { "" } else { "up to " },
         takes(least)
     );
     let method: MethodName = least.method.parse().ok()?;
-    let stack = least.stack_bytes as usize;
-    let fits = |width: u16, disparities: u16| method.pipeline_bytes(width, disparities) + stack <= most;
+    let fits = |width: u16, disparities: u16| {
+        let size = ImageSize { width, height: plan.rig.height };
+        let work = tables.work(least.core, least.clock_mhz, method, size, disparities);
+        work.is_some_and(|work| takes(&work) <= most)
+    };
     let Search { disparities, .. } = plan.search;
     let narrower = (disparities..plan.rig.width).rev().find(|&width| fits(width, disparities));
     let change = match narrower {

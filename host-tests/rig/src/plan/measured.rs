@@ -9,7 +9,8 @@ use crate::method::MethodName;
 /// The page with the tables.
 const PAGE: &str = include_str!("../../../../docs/performance.md");
 /// The headings of the columns that are read.
-const FIRMWARE: [&str; 7] = ["core", "method", "pixels", "disparities", "instructions", "stack", "flash"];
+const FIRMWARE: [&str; 8] =
+    ["core", "method", "pixels", "disparities", "instructions", "static RAM", "stack", "flash"];
 const GROWTH: [&str; 2] = ["what grows", "pixels, disparities"];
 
 /// One program on one core, as it was measured.
@@ -19,10 +20,14 @@ pub struct Measured {
     pub core: &'static str,
     /// The method.
     pub method: MethodName,
+    /// Columns of the images.
+    pub width: u16,
     /// How many disparities were searched.
     pub disparities: u16,
     /// Instructions for a pixel, all its disparities together.
     pub per_pixel: f64,
+    /// Bytes of static RAM of the whole program, of which the pipeline is nearly all.
+    pub ram_bytes: u32,
     /// Bytes of stack that were in use.
     pub stack_bytes: u32,
     /// Bytes of flash of the whole program.
@@ -68,12 +73,15 @@ pub fn firmware() -> Vec<Measured> {
     let read = |row: Vec<&'static str>| {
         let cell = |name: &str| head.iter().position(|&heading| heading == name).map(|at| row[at]);
         let (width, height) = cell("pixels")?.split_once('x')?;
-        let pixels = width.parse::<f64>().ok()? * height.parse::<f64>().ok()?;
+        let (width, height): (u16, u16) = (width.parse().ok()?, height.parse().ok()?);
+        let pixels = f64::from(width) * f64::from(height);
         Some(Measured {
             core: cell("core")?,
             method: method(cell("method")?)?,
+            width,
             disparities: cell("disparities")?.parse().ok()?,
             per_pixel: cell("instructions")?.parse::<f64>().ok()? / pixels,
+            ram_bytes: cell("static RAM")?.parse().ok()?,
             stack_bytes: cell("stack")?.parse().ok()?,
             flash_bytes: cell("flash")?.parse().ok()?,
         })
@@ -109,7 +117,10 @@ mod tests {
         for (measured, line) in all.iter().zip(lines) {
             let begin = format!("| {} | `{}` | ", measured.core, measured.method);
             assert!(line.starts_with(&begin), "{line}");
-            assert!(line.contains(&format!(" | {} | ", measured.stack_bytes)), "{line}");
+            assert!(
+                line.contains(&format!(" | {} | {} | ", measured.ram_bytes, measured.stack_bytes)),
+                "{line}"
+            );
             assert!(line.contains(&format!(" | {} | ", measured.flash_bytes)), "{line}");
         }
     }

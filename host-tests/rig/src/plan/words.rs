@@ -84,9 +84,17 @@ impl Plan {
             });
             line(text, &format!("    frames/s, {clock_mhz} MHz"), frames);
         }
-        *text += "             frames/s at one instruction a clock, without camera and memory waits; RAM is \
-                  exact, the rest is scaled\n             from what was measured in an emulator \
-                  (docs/performance.md)\n";
+        let memory = if self.work.iter().all(|work| work.ram_is_measured) {
+            "RAM as measured, of the core that takes most"
+        } else {
+            "RAM at most, on any core"
+        };
+        let _ = writeln!(
+            text,
+            "{:13}frames/s at one instruction a clock, without camera and memory waits; {memory};\n{:13}the \
+             rest is scaled from what was measured in an emulator (docs/performance.md)",
+            "", ""
+        );
     }
 }
 

@@ -1,9 +1,12 @@
-//! What a search takes of a microcontroller: estimates from what was measured, and memory, which is exact.
+//! What a search takes of a microcontroller: estimates from what was measured.
 //!
 //! The work of a frame is that of its pixels. For a pixel it grows with the disparities as the measured sizes
 //! of that core and method have it: along a straight line between them, and outside of them as the table of
 //! growth has it: of a Cortex-M55 for a method in vectors, else of a Cortex-M4. So it is exact at the sizes
 //! that were measured.
+//!
+//! The static RAM of a measured width and number of disparities is that of the measured program. Of any other
+//! it is a bound that holds on every core, up to 3.1 KB above what a core takes.
 
 use super::measured::{Growth, Measured, firmware, growth};
 use crate::method::MethodName;
@@ -36,8 +39,10 @@ pub struct Work {
     pub clock_mhz: f64,
     /// Estimated frames in a second, at one instruction a clock.
     pub frames_per_s: f64,
-    /// Bytes of RAM of the pipeline, at most: exact for this size.
+    /// Bytes of static RAM: those of the measured program, or those that the pipeline takes at most.
     pub ram_bytes: usize,
+    /// Whether the bytes of RAM were measured at this width and number of disparities.
+    pub ram_is_measured: bool,
     /// Bytes of stack that were in use at the measured sizes, at most.
     pub stack_bytes: u32,
     /// Bytes of flash of the measured programs, at most: the dense path and the program around it.
@@ -70,16 +75,26 @@ impl Tables {
         let points: Vec<_> = measured.iter().map(|m| (m.disparities, m.per_pixel)).collect();
         let per_pixel = self.per_pixel(core, method, &points, disparities)?;
         let instructions = per_pixel * f64::from(size.width) * f64::from(size.height);
+        let ram = self.ram_bytes(core, method, size.width, disparities);
         Some(Work {
             core,
             method: method.name(),
             instructions,
             clock_mhz,
             frames_per_s: clock_mhz * 1e6 / instructions,
-            ram_bytes: method.pipeline_bytes(size.width, disparities),
+            ram_bytes: ram.unwrap_or_else(|| method.pipeline_bytes(size.width, disparities)),
+            ram_is_measured: ram.is_some(),
             stack_bytes: measured.iter().map(|m| m.stack_bytes).max()?,
             flash_bytes: measured.iter().map(|m| m.flash_bytes).max()?,
         })
+    }
+
+    /// Bytes of static RAM that were measured, which do not depend on the images' height; `None` where the
+    /// width or the number of disparities was not measured.
+    fn ram_bytes(&self, core: &str, method: MethodName, width: u16, disparities: u16) -> Option<usize> {
+        let is_it =
+            |m: &&Measured| (m.core, m.method, m.width, m.disparities) == (core, method, width, disparities);
+        self.firmware.iter().find(is_it).map(|m| m.ram_bytes as usize)
     }
 
     /// Instructions for a pixel, from those at the measured numbers of disparities, which ascend.
@@ -140,6 +155,23 @@ mod tests {
             let number = page.split(&line).nth(1).and_then(|rest| rest.split(' ').next());
             let number: f64 = number.and_then(|n| n.parse().ok()).expect("the line is there");
             assert!((instructions(core, method, size, disparities) - number).abs() < 1e-6 * number);
+        }
+    }
+
+    /// A core's program takes less than the bound of all cores, and is not said to take the bound.
+    #[test]
+    fn memory_is_that_of_the_core_where_it_was_measured() {
+        let tables = Tables::read();
+        for m in firmware() {
+            let size = ImageSize { width: m.width, height: 120 };
+            let work = tables.work(m.core, 100.0, m.method, size, m.disparities).expect("it was measured");
+            assert_eq!((work.ram_bytes, work.ram_is_measured), (m.ram_bytes as usize, true), "{m:?}");
+            let bound = m.method.pipeline_bytes(m.width, m.disparities);
+            assert!((bound - 3100..=bound).contains(&work.ram_bytes), "{m:?}: {bound}");
+            let size = ImageSize { width: m.width + 4, height: 120 };
+            let work = tables.work(m.core, 100.0, m.method, size, m.disparities).expect("it was measured");
+            let bound = m.method.pipeline_bytes(m.width + 4, m.disparities);
+            assert_eq!((work.ram_bytes, work.ram_is_measured), (bound, false), "{m:?}");
         }
     }
 

@@ -74,7 +74,7 @@ struct LensArgs {
         allow_negative_numbers = true)]
     focal_mm: Option<f32>,
     /// Horizontal field of view, degrees, 1 to 170
-    #[arg(long, value_name = "DEGREES", value_parser = angle, allow_negative_numbers = true)]
+    #[arg(long, alias = "fov", value_name = "DEGREES", value_parser = angle, allow_negative_numbers = true)]
     field_of_view: Option<f64>,
 }
 

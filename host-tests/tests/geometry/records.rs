@@ -87,6 +87,26 @@ fn extreme_numbers_are_refused_by_name() {
     assert_eq!(far, Err(PoseError::NotFinite));
 }
 
+/// Calibrations are written to four decimals: the nearest rotation to such numbers is held.
+#[test]
+fn rotations_of_four_decimals_are_poses() {
+    let mut random = Random::new(14);
+    let mut number = || 2.0 * random.unit() - 1.0;
+    for case in 0..20_000 {
+        let axis = Vector3::new(number(), number(), number());
+        let exact = *Rotation3::from_scaled_axis(axis * 4.0).matrix();
+        let given = exact.map(|n| (n * 1e4).round() / 1e4);
+        let pose = Pose::new(given, Vector3::zeros()).expect("a rotation");
+        assert!((pose.rotation() - exact).amax() < 2e-4, "{case}: {given}");
+        let off = (pose.rotation().transpose() * pose.rotation() - Matrix3::identity()).amax();
+        assert!(off < 1e-12, "{case}: {off}");
+        assert!(Pose::new(given.cast::<f32>(), Vector3::zeros()).is_ok(), "{case}: {given}");
+    }
+    // What is farther off than rounding to four decimals makes it is refused.
+    let skewed = Matrix3::new(1.0, 3e-4, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0);
+    assert_eq!(Pose::new(skewed, Vector3::zeros()), Err(PoseError::NotARotation));
+}
+
 /// A fisheye lens has four coefficients: a record with more of them is none that was written.
 #[test]
 fn coefficients_that_a_lens_has_not_are_refused() {

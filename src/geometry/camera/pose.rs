@@ -30,8 +30,8 @@ deserialize_checked! {
 pub enum PoseError {
     /// A number is infinite or not a number, or the square of the translation's length is.
     NotFinite,
-    /// The matrix is no rotation: a column's length or an angle between two is off by more than 1e-4, or it
-    /// mirrors.
+    /// The matrix is no rotation: the square of a column's length is off by more than 2e-4, or the product of
+    /// two columns is, or it mirrors.
     NotARotation,
 }
 
@@ -46,6 +46,10 @@ impl<T: Real> Pose<T> {
         Self { rotation: Matrix3::identity(), translation: Vector3::zeros() }
     }
 
+    /// Largest element of `R^T R - I`. Four decimals put each number off by 5e-5, which moves the square of a
+    /// unit column's length by 1e-4 times the sum of its three numbers: by 1.74e-4 at most.
+    const TOLERANCE: f64 = 2e-4;
+
     /// No pose yet, in what waits for one. All zeros.
     pub(crate) const NOTHING: Self = {
         let o = T::ZERO;
@@ -54,13 +58,14 @@ impl<T: Real> Pose<T> {
 
     /// A pose of a rotation that is given to four decimals or more; the nearest exact one is held.
     pub fn new(rotation: Matrix3<T>, translation: Vector3<T>) -> Result<Self, PoseError> {
-        let Self { rotation, translation } = Self::of_parts(rotation, translation).checked(T::of(1e-4))?;
+        let tolerance = T::of(Self::TOLERANCE);
+        let Self { rotation, translation } = Self::of_parts(rotation, translation).checked(tolerance)?;
         let svd = Svd3::new(&rotation);
         Ok(Self { rotation: svd.u * svd.v.transpose(), translation })
     }
 
-    /// This pose, if it keeps what a pose promises: the matrix is a rotation, off by `tolerance` at the most,
-    /// and the length of the translation is a number.
+    /// This pose, if it keeps what a pose promises: the matrix is a rotation, with `R^T R` off by `tolerance`
+    /// at the most, and the length of the translation is a number.
     pub(crate) fn checked(self, tolerance: T) -> Result<Self, PoseError> {
         let Self { rotation, translation } = &self;
         if !(all_finite(rotation.as_slice()) && translation.norm_squared().is_finite()) {
@@ -77,7 +82,7 @@ impl<T: Real> Pose<T> {
     /// [`Self::checked`] for what is computed: by [`Self::new`]'s tolerance, where sane numbers are off by
     /// rounding.
     pub(crate) fn sound(self) -> Option<Self> {
-        self.checked(T::of(1e-4)).ok()
+        self.checked(T::of(Self::TOLERANCE)).ok()
     }
 
     /// A pose of what is known to be a rotation.

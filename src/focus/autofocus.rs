@@ -57,7 +57,7 @@ pub enum AutofocusError {
     Hardware,
     /// The event does not answer the command.
     Unexpected,
-    /// The limits leave less than [`Autofocus::STEPS`] positions.
+    /// The limits leave no more than [`Autofocus::STEPS`] positions, so that a step is less than one.
     Range {
         /// How many would have been enough.
         needed: u16,
@@ -116,7 +116,7 @@ pub struct Autofocus {
 }
 
 impl Autofocus {
-    /// Failures in a row after which it gives up.
+    /// Number of times in a row that a command which fails is given again: the failure after them ends it.
     pub const RETRIES: u8 = 3;
     /// The result is within one of so many steps of the range.
     pub const STEPS: u16 = FocusSearch::STEPS;
@@ -131,7 +131,7 @@ impl Autofocus {
             is_above: false,
             failures: 0,
             search: FocusSearch::new(limits.least, limits.most),
-            asked: LensCommand::Failed(AutofocusError::Range { needed: Self::STEPS }),
+            asked: LensCommand::Failed(AutofocusError::Range { needed: Self::STEPS + 1 }),
             end: None,
         };
         if limits.most.saturating_sub(limits.least) >= Self::STEPS {

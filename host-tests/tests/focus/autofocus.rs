@@ -143,7 +143,11 @@ fn both_ends_of_the_range_are_found() {
         assert!(f64::from(focused.expect("a focus").position.abs_diff(at_end)) <= STEP);
     }
     let narrow = ActuatorLimits { least: 5, most: 60, backlash: 0 };
-    assert_eq!(follow(narrow, 9, 5, peak).0, Err(AutofocusError::Range { needed: 64 }));
+    assert_eq!(follow(narrow, 9, 5, peak).0, Err(AutofocusError::Range { needed: 65 }));
+    // As many positions as there are steps are one too few, and as many as are said to be needed are enough.
+    let of = |positions: u16| ActuatorLimits { least: 0, most: positions - 1, backlash: 0 };
+    assert_eq!(follow(of(64), 9, 5, peak).0, Err(AutofocusError::Range { needed: 65 }));
+    assert!(follow(of(65), 9, 5, |at| 1000 - u32::from(at.abs_diff(30))).0.is_ok());
 }
 
 #[test]

@@ -95,7 +95,7 @@ fn described(rig: &StereoRig<f64>, rectified: &Rectification<f64>, format: &str,
     let _ = writeln!(
         text,
         "rectified    f {f:.1} px, both see {:.0} % of the image: {across:.1} x {down:.1} degrees; a remap \
-         holds {} and {} rows",
+         holds about {} and {} rows",
         100.0 * report.common,
         report.rows[0],
         report.rows[1]

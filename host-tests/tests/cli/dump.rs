@@ -68,7 +68,9 @@ fn every_stage_has_its_rows_and_the_last_is_what_match_answers() {
 fn rows_and_stages_that_are_none_are_refused() {
     let bench = Bench::new();
     bench.refused(&arguments(&bench, "census", &[("--row", "48")]), "--row 48: a row from 0 to 47");
-    bench.refused(&arguments(&bench, "census", &[("--row", "-1")]), "--row -1: a row from 0 to 47");
-    bench.refused(&arguments(&bench, "census", &[("--row", "x1")]), "--row x1: a row from 0 to 47");
+    for bad in ["-1", "x1", "1.5", ""] {
+        let arguments = arguments(&bench, "census", &[("--row", bad)]);
+        bench.refused(&arguments, "for '--row <Y>': a row from 0 or all is needed");
+    }
     bench.refused(&arguments(&bench, "sharpened", &[]), "the stages are census, cost");
 }

@@ -189,3 +189,35 @@ fn what_cannot_be_compared_is_named() {
     refused(&["--found", &found, "--truth", &truth, "--found-scale", "0"], "--found-scale");
     refused(&["--found", &found, "--truth", &truth, "--disparities", "64"], "--disparities");
 }
+
+/// What is for files says nothing of scenes that are matched here, and what is for a search nothing of files.
+#[test]
+fn options_of_the_other_way_to_evaluate_are_refused() {
+    let bench = Bench::new();
+    let found = put(&bench, "found.pfm", &float_map(&FOUND));
+    let truth = put(&bench, "truth.pfm", &float_map(&TRUTH));
+    let (scenes, nothing) = (bench.path("scenes").display().to_string(), "nothing");
+    for [option, value] in [
+        ["--mask", nothing],
+        ["--confidence", nothing],
+        ["--depths-by", nothing],
+        ["--found-scale", "256"],
+        ["--truth-scale", "64"],
+    ] {
+        let run = stereo(["eval", "--scenes", &scenes, option, value]);
+        bench.is_refusal(&run, "cannot be used with", option);
+        assert!(text(&run.stderr).contains(option), "{option}: {}", text(&run.stderr));
+    }
+    for [option, value] in [
+        ["--method", "fast"],
+        ["--filter", "strict"],
+        ["--noise", "high"],
+        ["--min-confidence", "100"],
+        ["--threads", "2"],
+        ["--balance", "none"],
+    ] {
+        let run = stereo(["eval", "--found", &found, "--truth", &truth, option, value]);
+        bench.is_refusal(&run, "cannot be used with", option);
+        assert!(text(&run.stderr).contains(option), "{option}: {}", text(&run.stderr));
+    }
+}

@@ -172,11 +172,23 @@ fn what_cannot_be_played_is_named() {
     fs::write(&file, "stereopsis recording 1\n{\"width\":0,\"height\":9,\"max_row_skew_us\":0}\n")
         .expect("a file");
     replay(&file, "frames of 0 x 9");
+    for (option, range) in [("--most-lost", "0 to 65535"), ("--frames", "1 to 4294967295")] {
+        for bad in ["-1", "x", "4294967296"] {
+            bench.refused(
+                &["replay", "--from", &file, "--disparities", "16", "--out", &out, option, bad],
+                &format!("a whole number from {range} is needed"),
+            );
+        }
+    }
     let record =
         |arguments: &[&str], wanted: &str| bench.refused(&[&["record"][..], arguments].concat(), wanted);
     record(&["--left", &left, "--right", &missing, "--out", &file], "missing: cannot be read");
     record(&["--left", &left, "--right", &frames[1], "--out", &file], "has 1 images and");
     record(&["--left", &left, "--right", &right, "--faults", "2", "--out", &file], "a number from 0 to 1");
+    record(
+        &["--left", &left, "--right", &right, "--seed", "-1", "--out", &file],
+        "for '--seed <S>': a whole number from 0 to",
+    );
     record(
         &["--left", &left, "--right", &right, "--out", &bench.path("").display().to_string()],
         "is not the name of a file",

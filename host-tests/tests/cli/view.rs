@@ -55,6 +55,12 @@ fn what_cannot_be_shown_is_refused() {
     let taken = TcpListener::bind(("127.0.0.1", 0)).expect("a free port");
     let port = taken.local_addr().expect("its address").port().to_string();
     bench.refused(&["view", "--port", &port, "--out", &out, "--module", &module], "--port");
+    for bad in ["-1", "65536", "x"] {
+        bench.refused(
+            &["view", "--port", bad, "--out", &out, "--module", &module],
+            "for '--port <PORT>': a whole number from 0 to 65535 is needed",
+        );
+    }
 }
 
 /// A program without the module beside it says what builds it.

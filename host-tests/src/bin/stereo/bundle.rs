@@ -74,7 +74,7 @@ fn iterations(text: &str) -> Result<u16, String> {
 pub fn run(args: &BundleArgs) -> Result<(), Failure> {
     if let (Some(width), LossChoice::Squares) = (args.width, args.loss) {
         return Err(Failure::usage(format!(
-            "--width {width}: only --loss huber has a width; give both or neither"
+            "--width {width}: only --loss huber has a width; give --loss huber too"
         )));
     }
     let problem = read_problem(&args.problem)?;

@@ -31,25 +31,37 @@ pub struct DumpArgs {
     #[arg(long, value_name = "STAGE")]
     pub stage: Stage,
     /// The row, from 0, or all
-    #[arg(long, value_name = "Y", default_value = "all", allow_negative_numbers = true)]
-    pub row: String,
+    #[arg(long, value_name = "Y", default_value = "all", value_parser = rows, allow_negative_numbers = true)]
+    pub row: Rows,
     /// The folder for the files
     #[arg(long, value_name = "DIR")]
     pub out: PathBuf,
+}
+
+/// Which rows are written.
+#[derive(Clone, Copy, Debug)]
+pub enum Rows {
+    All,
+    One(usize),
+}
+
+fn rows(text: &str) -> Result<Rows, &'static str> {
+    if text == "all" {
+        return Ok(Rows::All);
+    }
+    text.parse().map(Rows::One).map_err(|_| "a row from 0 or all is needed")
 }
 
 pub fn run(args: &DumpArgs) -> Result<(), Failure> {
     let mut pair = Pair::open(&args.pair.left, &args.pair.right)?;
     let config = input::config(&args.range, &args.method, pair.width, pair.height)?;
     let height = usize::from(config.height);
-    let rows = match args.row.as_str() {
-        "all" => 0..height,
-        text => {
-            let row = text.parse().ok().filter(|&row| row < height);
-            let row = row.ok_or_else(|| {
-                Failure::new(format!("--row {text}: a row from 0 to {} or all is needed", height - 1))
-            })?;
-            row..row + 1
+    let rows = match args.row {
+        Rows::All => 0..height,
+        Rows::One(row) if row < height => row..row + 1,
+        Rows::One(row) => {
+            let last = height - 1;
+            return Err(Failure::new(format!("--row {row}: a row from 0 to {last} or all is needed")));
         }
     };
     let mut staging = Staging::new(&args.out)?;

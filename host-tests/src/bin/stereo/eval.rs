@@ -33,7 +33,8 @@ Disparities are PFM (px) or PNG (px x 256, 0 where there is none). Folders are t
 #[derive(Debug, Args)]
 pub struct EvalArgs {
     /// Results: a file, or a folder with one for each scene
-    #[arg(long, value_name = "PATH", requires = "truth", required_unless_present = "scenes")]
+    #[arg(long, value_name = "PATH", requires = "truth", required_unless_present = "scenes",
+        conflicts_with_all = ["method", "filter", "noise", "min_confidence", "threads", "balance"])]
     found: Option<PathBuf>,
     /// The truth: a file, or a folder of scenes
     #[arg(long, value_name = "PATH", requires = "found")]
@@ -42,19 +43,21 @@ pub struct EvalArgs {
     #[arg(long, value_name = "DIR", conflicts_with_all = ["found", "truth"])]
     scenes: Option<PathBuf>,
     /// What is scored of a truth that is a file: where this picture is 255
-    #[arg(long, value_name = "FILE", requires = "found")]
+    #[arg(long, value_name = "FILE", requires = "found", conflicts_with = "scenes")]
     mask: Option<PathBuf>,
     /// How sure the results of a file are: a byte a pixel, more is surer
-    #[arg(long, value_name = "FILE", requires = "found")]
+    #[arg(long, value_name = "FILE", requires = "found", conflicts_with = "scenes")]
     confidence: Option<PathBuf>,
     /// Steps of a PNG of results in a pixel
-    #[arg(long, value_name = "N", default_value = "256", value_parser = scale, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "256", conflicts_with = "scenes", value_parser = scale,
+        allow_negative_numbers = true)]
     found_scale: f64,
     /// Steps of a PNG of a truth that is a file in a pixel
-    #[arg(long, value_name = "N", default_value = "256", value_parser = scale, allow_negative_numbers = true)]
+    #[arg(long, value_name = "N", default_value = "256", conflicts_with = "scenes", value_parser = scale,
+        allow_negative_numbers = true)]
     truth_scale: f64,
     /// Results are depths, m, which this calibration makes disparities of
-    #[arg(long, value_name = "FILE", requires = "found")]
+    #[arg(long, value_name = "FILE", requires = "found", conflicts_with = "scenes")]
     depths_by: Option<PathBuf>,
     /// The truth holds depths, too
     #[arg(long, requires = "depths_by")]

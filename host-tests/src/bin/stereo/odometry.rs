@@ -194,7 +194,7 @@ fn judge(trajectory: &Trajectory, sequence: &Path) -> Result<(), Failure> {
 fn times(args: &OdometryArgs, frames: usize) -> Result<Vec<f64>, Failure> {
     match &args.times {
         Some(_) if args.format != PoseFormat::Tum => {
-            Err(Failure::usage("--times: only --format tum has times; give both or neither"))
+            Err(Failure::usage("--times: only --format tum has times; give --format tum too"))
         }
         Some(path) => Ok(poses::read_times(path, frames)?),
         None => Ok((0..frames).map(|frame| frame as f64).collect()),

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::image_files::{files, is_pattern};
 use crate::place::Place;
-use crate::shared::{print, rate, whole};
+use crate::shared::{print, rate, seed, whole};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stereopsis_host::command_line::one_line;
@@ -41,7 +41,7 @@ pub struct RecordArgs {
         true)]
     pub faults: f64,
     /// Where the faults' random numbers begin
-    #[arg(long, value_name = "S", default_value_t = 1)]
+    #[arg(long, value_name = "S", default_value_t = 1, value_parser = seed, allow_negative_numbers = true)]
     pub seed: u64,
     /// The recording
     #[arg(long, value_name = "FILE")]

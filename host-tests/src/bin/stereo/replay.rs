@@ -8,15 +8,16 @@ use crate::look::{self, Disparities, Look, SearchArgs};
 use crate::place::{json, png};
 use crate::progress::Progress;
 use crate::scale::camera;
-use crate::shared::{BalanceArgs, MethodArgs, Unit, filter, method, noise, print, rate, remark};
+use crate::shared::{
+    BalanceArgs, MethodArgs, Unit, any_u16, filter, method, noise, print, rate, remark, whole,
+};
 use crate::typed_rig::TypedRig;
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
 use std::fmt::Display;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 use stereopsis::depth::DepthScale;
 use stereopsis::imaging::Noise;
 use stereopsis::matching::{Config, Filter};
@@ -36,13 +37,12 @@ use summary::Summary;
 pub const EXAMPLE: &str = "Example:
   stereo replay --from field.lines --disparities 64 --out replayed
 
-Written into the folder: for each frame 000001-disparity.pfm (px, infinity where there is no answer) and \
-                           000001-flags.png (the bits of `stereo match`, and 128 where a lost line was \
-                           rested on); frames.csv, a line for each frame; summary.json with every fault \
-                           counted by name. A folder to play has the folders left and right in it, with \
-                           images that belong together in the order of their names. With --obstacles: for \
-                           each frame 000001-obstacles.json and 000001-obstacles.png; obstacles.csv, a line \
-                           for each, and obstacles.png, which shows the sectors over time.";
+Written are, for each frame, 000001-disparity.pfm (px, infinity for no answer) and 000001-flags.png (the \
+                           bits of `stereo match`, and 128 where a lost line was rested on); frames.csv, a \
+                           line for each frame; summary.json with every fault counted by name. Images of a \
+                           folder's left and right belong together by the last number in their names, or, \
+                           without one, by order. With --obstacles: for each frame 000001-obstacles.json and \
+                           .png; obstacles.csv, a line for each; and obstacles.png, the sectors over time.";
 
 #[derive(Debug, Args)]
 pub struct ReplayArgs {
@@ -70,10 +70,11 @@ pub struct ReplayArgs {
     #[arg(long, value_name = "F", default_value_t = 30.0, value_parser = rate, allow_negative_numbers = true)]
     pub fps: f64,
     /// How many lines of a frame may be lost before it is given up; by default all
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = any_u16, allow_negative_numbers = true)]
     pub most_lost: Option<u16>,
     /// How many frames are played; by default all
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = |n: &str| whole(n, 1, u32::MAX), allow_negative_numbers =
+        true)]
     pub frames: Option<u32>,
     #[command(flatten)]
     pub watch: ObstacleArgs,

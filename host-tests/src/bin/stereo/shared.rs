@@ -3,8 +3,10 @@
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
 use nalgebra::Matrix3;
+use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::PathBuf;
+use std::str::FromStr;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis::matching::{Config, Filter, Kernel, Row};
 use stereopsis_host::colour::ColourScale;
@@ -178,8 +180,8 @@ fn threshold(text: &str) -> Result<f64, &'static str> {
     value.ok_or("a number from 0.001 to 1000 is needed")
 }
 
-fn seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("a whole number from 0 to {} is needed", u64::MAX))
+pub fn seed(text: &str) -> Result<u64, String> {
+    whole(text, 0, u64::MAX)
 }
 
 pub fn disparities(text: &str) -> Result<u16, String> {
@@ -223,9 +225,14 @@ pub fn image_size(text: &str) -> Result<ImageSize, &'static str> {
 }
 
 /// A whole number within limits, or what is needed.
-pub fn whole(text: &str, least: u16, most: u16) -> Result<u16, String> {
-    let value = text.parse().ok().filter(|value| (least..=most).contains(value));
+pub fn whole<T: FromStr + PartialOrd + Display>(text: &str, least: T, most: T) -> Result<T, String> {
+    let value = text.parse().ok().filter(|value| (&least..=&most).contains(&value));
     value.ok_or_else(|| format!("a whole number from {least} to {most} is needed"))
+}
+
+/// A whole number of 16 bits.
+pub fn any_u16(text: &str) -> Result<u16, String> {
+    whole(text, 0, u16::MAX)
 }
 
 /// Writes to standard output. A reader that closed its end has what it wanted.

@@ -30,7 +30,8 @@ pub const EXAMPLE: &str = "Example:
 The images are of one camera, in the order of their names, each with something in common with those before \
                            it. Written are structure.json, poses.txt (KITTI's form: a line for each image \
                            that stands somewhere, the rows of [R | t], which carries a point of that camera \
-                           into the first one's), cloud.ply, and views.svg from above and from the side.
+                           into the first one's), cloud.ply, views.svg from above and from the side, and \
+                           cameras.txt, images.txt and points3D.txt, which are a model in COLMAP's text form.
 
 Images alone do not say how large things are: without --baseline lengths are in units of the distance of the \
                            two views that it began with, and the files say so.";

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::input::Pair;
 use crate::serve;
-use crate::shared::{disparities, print};
+use crate::shared::{any_u16, disparities, print};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use stereopsis::matching::Config;
@@ -42,7 +42,8 @@ pub struct ViewArgs {
     #[arg(long, value_name = "DIR", default_value = "view")]
     out: PathBuf,
     /// The port of this machine's own address, 127.0.0.1, where the page is served; 0 for any that is free
-    #[arg(long, value_name = "PORT", default_value_t = 8017, conflicts_with = "write_only")]
+    #[arg(long, value_name = "PORT", default_value_t = 8017, conflicts_with = "write_only",
+        value_parser = any_u16, allow_negative_numbers = true)]
     port: u16,
     /// Write the page and serve nothing
     #[arg(long)]

@@ -29,8 +29,8 @@ pub struct Column {
     pub(super) base: u8,
     /// Cells of the segment that have an answer.
     pub(super) cells: u8,
-    /// Uppermost row to which the ground is seen without a gap from the lowest row on; the number of rows
-    /// where it is not.
+    /// Uppermost row to which the ground is seen from the lowest row on, with gaps of [`MOST_GAP`] rows at
+    /// most; the number of rows where it is not.
     pub(super) seen: u8,
     /// Deviation, steps, at most 255.
     pub(super) sigma: u8,

@@ -12,7 +12,8 @@ use crate::units::Disparity;
 pub const STEREOPSIS_PRESET_DENSE: i32 = 0;
 /// Preset of checks: drops what the other image or the neighbourhood contradicts.
 pub const STEREOPSIS_PRESET_DEFAULT: i32 = 1;
-/// Preset of checks: drops what is ambiguous or has little texture as well.
+/// Preset of checks: drops what is ambiguous and larger speckle as well, and of methods with windows what has
+/// little texture.
 pub const STEREOPSIS_PRESET_STRICT: i32 = 2;
 
 /// Value of `left_right_px` and `uniqueness_percent` that disables the check.

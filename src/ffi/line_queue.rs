@@ -130,7 +130,7 @@ pub unsafe fn line_queue_init(
     let content = if (1..=MOST_LINE_BYTES).contains(&line_bytes) {
         let each = slot_bytes(line_bytes);
         let room = length.saturating_sub(size_of::<State<LineQueue>>());
-        // One slot is being filled while another one waits. The division is by 40 at least.
+        // One slot stays free, so that two hold one line. The division is by 40 at least.
         match room.checked_div(each).unwrap_or(0) {
             0 | 1 => Err(Status::MemoryTooShort),
             slots => Ok((LineQueue::with(slots, line_bytes), slots * each)),

@@ -137,8 +137,9 @@ macro_rules! c_api_of_focus_and_motion {
         }
 
         /// Begins with a rectified rig, as from `stereopsis_rectifier_start`; what was known is forgotten.
-        /// Fails where the rig's numbers are none, and with `STEREOPSIS_STATUS_ODOMETRY_CONFIG` on lengths
-        /// that are negative or not numbers.
+        /// Fails where the rig's numbers are none, and with `STEREOPSIS_STATUS_ODOMETRY_CONFIG` where
+        /// `far_px`, `near_px`, `most_disparity_px` or `most_samples` is not over 0, `sigma_px` is not 0.001
+        /// to 1000, or `spacing_px` is negative, infinite or not a number.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_odometry_start"))]
         pub unsafe extern "C" fn stereopsis_odometry_start(
             handle: *mut OdometryHandle,

@@ -13,6 +13,10 @@ macro_rules! c_api_of_line_queues {
         /// `STEREOPSIS_STATUS_LINE_BYTES` for other lengths, with `STEREOPSIS_STATUS_MEMORY_TOO_SHORT` for
         /// fewer slots.
         ///
+        /// One slot less than there are holds lines that wait, among them the one that is being read. So two
+        /// slots are enough where each line is done before the next one begins; three let a line come in
+        /// while another one is read.
+        ///
         /// A queue takes lines from one interrupt, which calls `stereopsis_line_queue_begin` and `_finish`,
         /// to one program, which calls `stereopsis_line_queue_next` and `_done`. Either side may interrupt
         /// the other, on one core or on two; there is no lock. The memory is not read, and belongs to the
@@ -36,8 +40,9 @@ macro_rules! c_api_of_line_queues {
         }
 
         /// In the interrupt: writes where the next line goes, `line_bytes` bytes aligned to 8, for a DMA or a
-        /// loop to fill. Without a free slot the result is `STEREOPSIS_STATUS_NO_SLOT`, `bytes` is left as it
-        /// was, and the line counts as lost. A slot that was not finished is given once more.
+        /// loop to fill. Where all slots but one hold lines that wait, the result is
+        /// `STEREOPSIS_STATUS_NO_SLOT`, `bytes` is left as it was, and the line counts as lost. A slot that
+        /// was not finished is given once more.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_line_queue_begin"))]
         pub unsafe extern "C" fn stereopsis_line_queue_begin(
             handle: *mut LineQueueHandle,

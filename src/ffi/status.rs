@@ -19,7 +19,7 @@ pub enum Status {
     FrameDone = 2,
     /// Line queue: no line waits.
     NoLineYet = 3,
-    /// Line queue: all slots hold lines that wait, so that this one is lost, and counted.
+    /// Line queue: all slots but one hold lines that wait, so that this one is lost, and counted.
     NoSlot = 4,
     /// Features: the list has no room for all matches.
     Dropped = 5,
@@ -186,7 +186,7 @@ pub enum Status {
     ObstacleCells = -79,
     /// Obstacles: there are 1 to 32 sectors.
     ObstacleSectors = -80,
-    /// Obstacles: a height is 0, the pitch is over 500 mrad, or the heights searched are in no order.
+    /// Obstacles: a height is 0, the pitch or roll is over 500 mrad, or the heights searched are in no order.
     ObstaclePose = -81,
     /// Obstacles: the deviation is not 1 to 320 steps, or an obstacle's height or a drop's depth is 0.
     ObstacleLimits = -82,

@@ -140,7 +140,8 @@
 #define STEREOPSIS_PRESET_DEFAULT 1
 
 /**
- * Preset of checks: drops what is ambiguous or has little texture as well.
+ * Preset of checks: drops what is ambiguous and larger speckle as well, and of methods with windows what has
+ * little texture.
  */
 #define STEREOPSIS_PRESET_STRICT 2
 
@@ -522,7 +523,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_NO_LINE_YET = 3,
   /**
-   * Line queue: all slots hold lines that wait, so that this one is lost, and counted.
+   * Line queue: all slots but one hold lines that wait, so that this one is lost, and counted.
    */
   STEREOPSIS_STATUS_NO_SLOT = 4,
   /**
@@ -855,7 +856,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_OBSTACLE_SECTORS = -80,
   /**
-   * Obstacles: a height is 0, the pitch is over 500 mrad, or the heights searched are in no order.
+   * Obstacles: a height is 0, the pitch or roll is over 500 mrad, or the heights searched are in no order.
    */
   STEREOPSIS_STATUS_OBSTACLE_POSE = -81,
   /**
@@ -1100,7 +1101,9 @@ typedef struct stereopsis_winner {
   uint8_t disparity;
   /**
    * Disparity that the winner's partner in the right image keeps, likewise: that of the cheapest winner
-   * that chose it, of the leftmost among equals.
+   * that chose it, of the leftmost among equals. Methods along paths add four times the difference of the
+   * two pixels' grey levels to a winner's cost here, up to 255, unless noise is configured or the rows
+   * that a winner looks at end below the picture.
    */
   uint8_t kept;
   /**
@@ -2059,6 +2062,10 @@ stereopsis_status stereopsis_winners_seal(struct stereopsis_winner *winners, siz
  * `STEREOPSIS_STATUS_LINE_BYTES` for other lengths, with `STEREOPSIS_STATUS_MEMORY_TOO_SHORT` for
  * fewer slots.
  *
+ * One slot less than there are holds lines that wait, among them the one that is being read. So two
+ * slots are enough where each line is done before the next one begins; three let a line come in
+ * while another one is read.
+ *
  * A queue takes lines from one interrupt, which calls `stereopsis_line_queue_begin` and `_finish`,
  * to one program, which calls `stereopsis_line_queue_next` and `_done`. Either side may interrupt
  * the other, on one core or on two; there is no lock. The memory is not read, and belongs to the
@@ -2076,8 +2083,9 @@ stereopsis_status stereopsis_line_queue_deinit(struct stereopsis_line_queue *han
 
 /**
  * In the interrupt: writes where the next line goes, `line_bytes` bytes aligned to 8, for a DMA or a
- * loop to fill. Without a free slot the result is `STEREOPSIS_STATUS_NO_SLOT`, `bytes` is left as it
- * was, and the line counts as lost. A slot that was not finished is given once more.
+ * loop to fill. Where all slots but one hold lines that wait, the result is
+ * `STEREOPSIS_STATUS_NO_SLOT`, `bytes` is left as it was, and the line counts as lost. A slot that
+ * was not finished is given once more.
  */
 stereopsis_status stereopsis_line_queue_begin(struct stereopsis_line_queue *handle, uint8_t **bytes);
 
@@ -2432,8 +2440,8 @@ stereopsis_status stereopsis_eight_point(const struct stereopsis_match *matches,
 
 /**
  * Estimates F of `count` matches, some of them wrong, and which agree with it (RANSAC, at most
- * 10 000 samples): `inliers` gets 1 for a match within `threshold_px` of its epipolar line, and 0
- * for another. Equal seeds give equal results. Fails on fewer than eight matches, on numbers that
+ * 10 000 samples): `inliers` gets 1 for a match whose Sampson distance is up to `threshold_px`, and
+ * 0 for another. Equal seeds give equal results. Fails on fewer than eight matches, on numbers that
  * are not finite, on a threshold that is not over 0, where not more than seven matches agree, and
  * where they are on a plane; `inliers` may have been written then.
  */
@@ -2558,8 +2566,9 @@ stereopsis_status stereopsis_odometry_deinit(struct stereopsis_odometry *handle)
 
 /**
  * Begins with a rectified rig, as from `stereopsis_rectifier_start`; what was known is forgotten.
- * Fails where the rig's numbers are none, and with `STEREOPSIS_STATUS_ODOMETRY_CONFIG` on lengths
- * that are negative or not numbers.
+ * Fails where the rig's numbers are none, and with `STEREOPSIS_STATUS_ODOMETRY_CONFIG` where
+ * `far_px`, `near_px`, `most_disparity_px` or `most_samples` is not over 0, `sigma_px` is not 0.001
+ * to 1000, or `spacing_px` is negative, infinite or not a number.
  */
 stereopsis_status stereopsis_odometry_start(struct stereopsis_odometry *handle,
                                             const struct stereopsis_rig *rig,

@@ -101,7 +101,9 @@ impl WinnerRecord {
     }
 
     /// The disparity that the winner's partner in the right image keeps, over the smallest one searched, px:
-    /// that of the cheapest winner that chose it, of the leftmost among equals.
+    /// that of the cheapest winner that chose it, of the leftmost among equals. In the methods along paths a
+    /// winner costs four times the difference of the two pixels' grey levels more here, up to 255, unless
+    /// noise is configured or the rows that a winner looks at end below the picture.
     pub const fn kept(self) -> u8 {
         self.0[4]
     }

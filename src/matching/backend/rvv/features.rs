@@ -87,8 +87,8 @@ impl FeatureRows for VectorRows {
                 least = inout(reg) least.as_mut_ptr().add(1) => _,
                 greatest = inout(reg) greatest.as_mut_ptr().add(1) => _,
                 out("v8") _, out("v9") _, out("v10") _, out("v11") _, out("v12") _, out("v13") _,
-                out("v14") _, out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _, out("v20") _,
-                out("v21") _, out("v22") _, out("v23") _, options(nostack),
+                out("v14") _, out("v15") _, out("v16") _, out("v17") _, out("v18") _, out("v19") _,
+                out("v20") _, out("v21") _, out("v22") _, out("v23") _, options(nostack),
             );
         }
     }

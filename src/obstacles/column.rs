@@ -30,7 +30,8 @@ pub struct Column {
     /// Cells of the segment that have an answer.
     pub(super) cells: u8,
     /// Uppermost row to which the ground is seen from the lowest row on, with gaps of [`MOST_GAP`] rows at
-    /// most; the number of rows where it is not.
+    /// most; the number of rows where it is not. Without a ground 0 where the whole column has answers, with
+    /// such gaps.
     pub(super) seen: u8,
     /// Deviation, steps, at most 255.
     pub(super) sigma: u8,

@@ -7,7 +7,9 @@ use crate::units::Disparity;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum GroundSource {
-    /// There is none, as for a camera that flies: every surface in range is an obstacle.
+    /// There is none, as for a camera that flies: every surface in range is an obstacle. A column is seen
+    /// where it has answers from the picture's upper edge to the lower one, with gaps of at most two rows of
+    /// cells.
     Absent,
     /// The camera's pose is known, as from an inertial sensor.
     Given {

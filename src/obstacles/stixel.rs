@@ -131,14 +131,17 @@ impl<'a> Labelling<'a> {
         let mut sums = Sums(0);
         let mut below = None;
         // The first of equals, as all are below the lowest row.
-        let (mut answered, mut from) = (0, OBSTACLE as u8);
+        let mut from = OBSTACLE as u8;
+        // Rows without an answer side by side: here, and the most.
+        let (mut gap, mut most_gap) = (0, 0);
         for row in (0..rows).rev() {
             let (Some(step), Some(bins)) = (labels.get_mut(row), intervals.get(row)) else { break };
             let parallax = self.cells.parallax(column, row);
             let breaks =
                 parallax.zip(below).is_some_and(|(p, b): (i32, i32)| (p - b).abs() > self.same_surface);
             below = parallax.or(below);
-            answered += usize::from(parallax.is_some());
+            gap = if parallax.is_some() { 0 } else { gap + 1 };
+            most_gap = gap.max(most_gap);
             let row = Interval::load(bins).at(beside, self.cells.farthest);
             let costs = self.costs(&row, parallax, per_step, most);
             let (stays, cheapest) = sums.advance(if breaks { CHANGE << (8 * OBSTACLE) } else { 0 }, costs);
@@ -150,13 +153,11 @@ impl<'a> Labelling<'a> {
         let found = if self.touches(column, &whole) { whole } else { segment };
         let seen = match self.ground {
             Some(_) => self.seen(column, beside, labels),
-            // Without a ground a column is seen where enough of it has answers.
-            None if self.config.ground == GroundSource::Absent
-                && 100 * answered >= usize::from(self.config.least_answered) * rows =>
-            {
-                0
+            // Without a ground nothing says where a thing ahead would stand: it may be in any gap.
+            None => {
+                let is_flying = self.config.ground == GroundSource::Absent;
+                if is_flying && below.is_some() && most_gap <= MOST_GAP { 0 } else { rows as u8 }
             }
-            None => rows as u8,
         };
         Column { seen, ..found }
     }

@@ -1,9 +1,11 @@
 //! Obstacles, ground and free space: the core beside its naive twin (`twins`), worked geometry (`geometry`),
-//! what counts (`evidence`), rendered scenes (`scenes`) and faulty frames (`faults`).
+//! what counts (`evidence`), a camera that flies (`flight`), rendered scenes (`scenes`) and faulty frames
+//! (`faults`).
 
 mod decisions;
 mod evidence;
 mod faults;
+mod flight;
 mod geometry;
 mod given;
 mod scenes;

@@ -239,9 +239,10 @@ impl Column<'_> {
     pub(super) fn seen(&self, labels: &[Kind]) -> usize {
         let rows = labels.len();
         if self.ground.is_none() {
-            let answered = self.parallaxes.iter().flatten().count();
-            let enough = 100 * answered >= usize::from(self.scene.config.least_answered) * rows;
-            return if self.scene.config.ground == GroundSource::Absent && enough { 0 } else { rows };
+            let has_answers = self.parallaxes.iter().any(Option::is_some);
+            let is_whole = self.parallaxes.split(Option::is_some).all(|gap| gap.len() <= 2);
+            let is_flying = self.scene.config.ground == GroundSource::Absent;
+            return if is_flying && has_answers && is_whole { 0 } else { rows };
         }
         let shows = |row: usize| labels[row] == Kind::Ground && self.is_close(row);
         let ends = |row: usize| labels[row] != Kind::Ground && self.parallaxes[row].is_some();

@@ -87,15 +87,20 @@ pub(super) fn test_motion<T: Real>(
     };
     let still = problem.solve(motion.reported_pose, Free::Nothing);
     // Points too far away have no slope by a step: with them alone any step costs as much as none.
-    if deviation <= unit * T::of(SHOWN) && gain(&still) < T::of(SIX) {
+    // What few points cost is bounded, so that the poses of none of them may seem as good as any.
+    if deviation <= unit * T::of(SHOWN) && gain(&still) < T::of(SIX) && is_enough(&still) {
         return MotionTest::Known(still, State::Stationary);
     }
     let was_lost = motion.was_lost();
     let state = if was_lost { State::Found } else { State::Tracked };
     let turn = Pose::of_parts(*all.pose.rotation(), *motion.reported_pose.translation());
     let turned = problem.solve(turn, Free::Rotation);
-    let is_none = gain(&turned) < T::of(THREE);
-    if !(deviation <= unit * T::of(OPEN)) || (is_none && deviation > unit * T::of(UNKNOWN)) {
+    let is_none = gain(&turned) < T::of(THREE) && is_enough(&turned);
+    let is_open = !(deviation <= unit * T::of(OPEN));
+    if is_open && !is_enough(&turned) {
+        return MotionTest::Lost;
+    }
+    if is_open || (is_none && deviation > unit * T::of(UNKNOWN)) {
         return MotionTest::Known(turned, State::TranslationUnknown);
     }
     if is_none && rig.right.is_none() {

@@ -89,6 +89,27 @@ fn single_precision_finds_nearly_all() {
     assert!(found >= 970, "{found} of 1000");
 }
 
+/// Edges a thirtieth to a three-hundredth of the others, along any direction: what is told sees the points.
+#[test]
+fn a_short_edge_turns_no_pose_away_from_the_points() {
+    let (mut random, mut told) = (Random::new(5), 0);
+    for ratio in [1.0, 10.0, 30.0, 100.0, 200.0, 300.0] {
+        for _ in 0..500 {
+            let mut cube = || [(); 3].map(|()| 2.0 * random.unit() - 1.0);
+            let ahead = Vector3::new(0.0, 0.0, 3.0);
+            let [first, third, along] = [(); 3].map(|()| Vector3::from(cube()));
+            let points = [first + ahead, first + ahead + along.normalize() / ratio, third + ahead];
+            let points = points.map(|p| Point3::from(p.cast::<f32>()));
+            let sights = points.map(|p| p.coords);
+            for pose in p3p(&sights, &points).iter().flat_map(|poses| poses.as_slice()) {
+                told += 1;
+                assert!(solves(pose, &sights, &points) < 2e-3, "{ratio}: {pose:?}");
+            }
+        }
+    }
+    assert!(told > 4000, "{told} poses");
+}
+
 #[test]
 fn wrong_points_do_no_harm() {
     for (seed, share) in [(1, 0.0), (2, 0.3), (3, 0.6)] {

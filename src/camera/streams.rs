@@ -104,8 +104,18 @@ impl<S: LineSource, const RAW: usize> StereoSource for SideBySide<S, RAW> {
 pub struct Interleaved<S> {
     source: S,
     line_us: u32,
-    /// The stream is a line ahead: this one of the left camera was taken while its partner before was lost.
-    lost: bool,
+    before: Before,
+}
+
+/// What became of the line that was asked for last.
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+enum Before {
+    /// It came, or the row that it ended is whole or reported.
+    Came,
+    /// It was a left one that is lost, and its row is reported: the right one of the row is next.
+    LeftLost,
+    /// It failed, and the row was reported: what is next may be the right one of the row.
+    Failed,
 }
 
 impl<S: LineSource> Interleaved<S> {
@@ -116,7 +126,7 @@ impl<S: LineSource> Interleaved<S> {
         if !height.is_multiple_of(2) {
             Err(StreamError::OddHeight { height })
         } else {
-            Ok(Self { source, line_us, lost: false })
+            Ok(Self { source, line_us, before: Before::Came })
         }
     }
 
@@ -141,7 +151,7 @@ impl<S: LineSource> StereoSource for Interleaved<S> {
     }
 
     fn start_frame(&mut self) -> Result<FrameStart, CameraError<S::Error>> {
-        self.lost = false;
+        self.before = Before::Came;
         self.source.start_frame()
     }
 
@@ -150,42 +160,52 @@ impl<S: LineSource> StereoSource for Interleaved<S> {
         if left.len().min(right.len()) < needed {
             return Err(CameraError::BufferTooShort { needed });
         }
-        // After a fault the stream may stand on a right line: one more is taken, and the row is lost once.
-        let first = self.source.next_line(left).inspect_err(|_| self.lost = true)?;
-        if first.row % 2 != 0 {
-            let was_reported = core::mem::take(&mut self.lost);
-            if !was_reported {
-                return Err(CameraError::LineLost(LineFault::Dropped));
-            }
-            return self.next_lines_of_row(left, right);
+        let before = self.before;
+        let mut first = self.first(left);
+        // The right line of a row that is reported is passed over, whether it comes or is lost, too.
+        let is_of_reported = match (before, &first) {
+            (Before::LeftLost | Before::Failed, Ok(line)) => line.row % 2 != 0,
+            (Before::LeftLost, Err(CameraError::LineLost(_))) => true,
+            _ => false,
+        };
+        if is_of_reported {
+            self.before = Before::Came;
+            first = self.first(left);
         }
-        self.second(first, right)
-    }
-}
-
-impl<S: LineSource> Interleaved<S> {
-    fn next_lines_of_row(
-        &mut self,
-        left: &mut [u8],
-        right: &mut [u8],
-    ) -> Result<LineStart, CameraError<S::Error>> {
-        let first = self.source.next_line(left)?;
+        let first = first?;
         if first.row % 2 != 0 {
             return Err(CameraError::LineLost(LineFault::Dropped));
         }
-        self.second(first, right)
-    }
-
-    /// Reads the right camera's line of the row of `first`.
-    fn second(&mut self, first: LineStart, right: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
-        self.lost = false;
-        let second = self.source.next_line(right)?;
+        let second = self.source.next_line(right).inspect_err(|e| self.before = after(e, Before::Came))?;
         if second.row != first.row.saturating_add(1) {
             // It is of a row below. If that is a left line, its right one comes next, and is passed over
             // there.
             return Err(CameraError::LineLost(LineFault::Dropped));
         }
         Ok(LineStart { row: first.row / 2, ..first })
+    }
+}
+
+impl<S: LineSource> Interleaved<S> {
+    /// Reads a line where the left camera's is due.
+    fn first(&mut self, left: &mut [u8]) -> Result<LineStart, CameraError<S::Error>> {
+        let first = self.source.next_line(left);
+        self.before = match &first {
+            Ok(_) => Before::Came,
+            Err(CameraError::WouldBlock) => self.before,
+            Err(e) => after(e, Before::LeftLost),
+        };
+        first
+    }
+}
+
+/// What an error leaves behind: `lost` where it is a line that is lost, and so counted; nothing where nothing
+/// has changed.
+fn after<E>(error: &CameraError<E>, lost: Before) -> Before {
+    match error {
+        CameraError::LineLost(_) => lost,
+        CameraError::WouldBlock => Before::Came,
+        _ => Before::Failed,
     }
 }
 

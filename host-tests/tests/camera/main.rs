@@ -2,7 +2,7 @@
 //!
 //! * `scripted`: cameras that do what a test says, and what stands on cameras.
 //! * `handoff`: lines from an interrupt; `signal`: the task that they wake. `formats`: pixel formats and
-//!   streams of two cameras; `mosaics`: lost lines of a mosaic.
+//!   streams of two cameras; `told_lost`: streams that say what is lost; `mosaics`: lost lines of a mosaic.
 //! * `sensors`, `hm01b0`: what is written to them; `waited`: the same over a bus that is waited for.
 //! * `on_spi`: the driver of `examples/boards/spi-cameras`, on simulated cameras and on ones that fail.
 
@@ -14,4 +14,5 @@ mod on_spi;
 mod scripted;
 mod sensors;
 mod signal;
+mod told_lost;
 mod waited;

@@ -182,6 +182,8 @@ impl Autofocus {
         if self.failures > Self::RETRIES {
             self.asked = LensCommand::Failed(AutofocusError::Hardware);
         } else if let LensCommand::Move(_) = self.asked {
+            // The lens may have gone past the target, which is to be come to from below again.
+            self.is_above |= self.limits.backlash > 0 && self.at > self.target;
             self.travel();
         }
     }

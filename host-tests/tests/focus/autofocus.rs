@@ -136,6 +136,36 @@ fn moves_are_bounded_and_come_from_below() {
 }
 
 #[test]
+fn a_lens_that_went_too_far_comes_from_below_again() {
+    let limits = ActuatorLimits { least: 0, most: 1023, backlash: 20 };
+    let (mut focus, mut command) = Autofocus::new(limits, 1023, 0);
+    let (mut at, mut moves, mut from, mut spoiled) = (0, 0, 0, 0);
+    loop {
+        let is_moving = matches!(command, LensCommand::Move(_));
+        assert!(is_moving || at == 0 || from <= at, "it came from {from} to {at}");
+        let event = match command {
+            LensCommand::Move(position) => {
+                moves += 1;
+                (from, at) = (at, position);
+                // Every fifth move ends far above where it was to.
+                if moves % 5 == 0 {
+                    (at, spoiled) = ((position + 250).min(1023), spoiled + 1);
+                }
+                LensEvent::Arrived(at)
+            }
+            LensCommand::Measure => LensEvent::Sharpness(peak(at)),
+            LensCommand::Focused(focused) => {
+                assert!(focused.position == at && f64::from(at.abs_diff(700)) <= STEP, "{focused:?}");
+                break;
+            }
+            LensCommand::Failed(error) => panic!("{error}"),
+        };
+        command = focus.event(event);
+    }
+    assert!(spoiled > 2, "{spoiled} moves went too far");
+}
+
+#[test]
 fn both_ends_of_the_range_are_found() {
     for (best, at_end) in [(0.0, 0), (1023.0, 1023)] {
         let (focused, _) =

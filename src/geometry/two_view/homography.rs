@@ -23,7 +23,12 @@ pub struct Homography<T: Real> {
     inverse: Matrix3<T>,
 }
 
-deserialize_checked! { Homography<T> { matrix: Matrix3<T> } by |stored| Self::from_matrix(&stored.matrix) }
+deserialize_checked! { Homography<T> { matrix: Matrix3<T> } by |stored| Self::checked(&stored.matrix, READ) }
+
+/// How far from singular a matrix has to be, in steps between numbers; less when it is read, for an inverse
+/// that was stored has been rounded.
+const GIVEN: f64 = 16.0;
+const READ: f64 = 4.0;
 
 /// Why there is no homography.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -53,6 +58,11 @@ error_text!(HomographyError {
 impl<T: Real> Homography<T> {
     /// The homography of a matrix, of any scale but zero.
     pub fn from_matrix(matrix: &Matrix3<T>) -> Result<Self, HomographyError> {
+        Self::checked(matrix, GIVEN)
+    }
+
+    /// The homography of a matrix that is farther from singular than `least`.
+    fn checked(matrix: &Matrix3<T>, least: f64) -> Result<Self, HomographyError> {
         if !matrix.iter().all(|x| x.is_finite()) {
             return Err(HomographyError::NotFinite);
         }
@@ -65,8 +75,12 @@ impl<T: Real> Homography<T> {
         // The inverse but for its scale: the columns' cross products are its rows.
         let [a, b, c] = columns3(&matrix);
         let rows = [b.cross(&c), c.cross(&a), a.cross(&b)];
-        let (determinant, size) = (rows[2].dot(&c), rows[2].norm() * c.norm());
-        if !(determinant.abs() > size * T::EPSILON * T::of(16.0)) || size == T::ZERO {
+        // How the last column stands to the others, and the last row to the other rows, which is the same of
+        // the inverse: either is enough, so that a matrix and its inverse are judged alike.
+        let determinant = rows[2].dot(&c);
+        let across = Vector3::new(rows[0].z, rows[1].z, rows[2].z);
+        let [columns, lines] = [rows[2].norm() * c.norm(), across.norm() * matrix.row(2).norm()];
+        if !(determinant.abs() > columns.min(lines) * T::EPSILON * T::of(least)) {
             return Err(HomographyError::Singular);
         }
         let inverse = Matrix3::from_rows(&rows.map(|row| row.transpose() / determinant));
@@ -231,5 +245,16 @@ mod tests {
         assert_eq!(Homography::from_correspondences(&good[..3]), Err(TooFew));
         assert_eq!(Homography::from_correspondences(&[good[0], good[1], good[2], good[2]]), Err(Repeated));
         assert_eq!(Homography::from_matrix(&Matrix3::<f64>::from_element(1.0)), Err(Singular));
+    }
+
+    #[test]
+    fn a_matrix_and_its_inverse_are_judged_alike() {
+        // The last column is 1e-7 of its length from the plane of the others, and no row is near the others'.
+        let leaning = Matrix3::new(1.0, 0.0, 1e3, 0.0, 1.0, 1e3, 0.0, 0.0, 1e-4_f32);
+        for matrix in [leaning, leaning.transpose()] {
+            let h = Homography::from_matrix(&matrix).expect("H");
+            let again = Homography::from_matrix(h.inverse().matrix()).expect("its inverse");
+            assert!((again.inverse().matrix() - h.matrix()).amax() < 1e-5, "{matrix}");
+        }
     }
 }

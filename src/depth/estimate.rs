@@ -30,24 +30,31 @@ impl Depth {
     /// Fuses two depths by inverse variance: the estimate of least variance for independent errors. It is
     /// taken in `1 / Z`, where the errors of disparity and of focus are symmetric, with deviation `sigma_Z /
     /// Z^2`. Of two depths of different surfaces, the one with the smaller deviation of `1 / Z` is kept.
-    /// Where a variance is not finite the other depth is the answer; the first one where neither is, or both
-    /// are 0.
+    /// Where a variance is not finite, or the other one is 0, the other depth is the answer; the first one
+    /// where neither is finite, or both are 0.
     pub fn fused(self, other: Self) -> Self {
-        let [a, b] = [self, other].map(|d| (1.0 / d.depth_m, d.sigma_m / (d.depth_m * d.depth_m)));
+        // Times the nearer depth, so that no power of a depth is beyond what the numbers hold.
+        let near = self.depth_m.min(other.depth_m);
+        let [a, b] = [self, other].map(|d| {
+            let inverse = near / d.depth_m;
+            (inverse, d.sigma_m / d.depth_m * inverse)
+        });
         let (variance_a, variance_b) = (a.1 * a.1, b.1 * b.1);
         if !variance_a.is_finite() || !variance_b.is_finite() {
             return if variance_b.is_finite() { other } else { self };
         }
-        if variance_a + variance_b == 0.0 {
-            return self;
+        if variance_a == 0.0 || variance_b == 0.0 {
+            return if variance_a == 0.0 { self } else { other };
         }
         let apart = a.0 - b.0;
         if apart * apart > Self::SAME_SURFACE * Self::SAME_SURFACE * (variance_a + variance_b) {
             return if a.1 <= b.1 { self } else { other };
         }
-        let depth_m = (variance_a + variance_b) / (a.0 * variance_b + b.0 * variance_a);
+        let ratio = (variance_a + variance_b) / (a.0 * variance_b + b.0 * variance_a);
+        // Between the two, also where rounding would leave the range.
+        let depth_m = (near * ratio).min(self.depth_m.max(other.depth_m));
         let sigma = a.1 * (b.1 / nalgebra::ComplexField::sqrt(variance_a + variance_b));
-        Self { depth_m, sigma_m: sigma * depth_m * depth_m }
+        Self { depth_m, sigma_m: sigma * depth_m / near * depth_m }
     }
 }
 
@@ -87,6 +94,15 @@ mod tests {
         assert_eq!(unknown[0].fused(unknown[1]), unknown[0]);
         let exact = [of(2.0, 0.0), of(3.0, 0.0)];
         assert_eq!((exact[0].fused(exact[0]), exact[0].fused(exact[1])), (exact[0], exact[0]));
+        // Far away the deviation of `1 / Z` is less than any number above 0.
+        let (near, far) = (of(0.352, 0.975), of(f32::MAX, 22.0));
+        assert_eq!((near.fused(far), far.fused(near)), (far, far));
+        let pairs = [(1e30, 1e29, 2e30, 1e29), (1e-30, 1e-31, 2e-30, 1e-30), (1.0, 3.0, 1e36, 1e30)];
+        for (za, sa, zb, sb) in pairs {
+            let both = of(za, sa).fused(of(zb, sb));
+            assert!((za..=zb).contains(&both.depth_m) && both.sigma_m > 0.0, "{both:?}");
+            assert!(both.sigma_m.is_finite(), "{both:?}");
+        }
         assert_eq!((exact[0].fused(of(2.1, 0.1)), of(2.1, 0.1).fused(exact[0])), (exact[0], exact[0]));
     }
 }

@@ -55,12 +55,15 @@ pub enum FocusCalibrationError {
     },
     /// The lens does not move nearer focus with larger positions.
     Direction,
+    /// The lens or the distances are so extreme that a number of the line is infinite or none.
+    NotFinite,
 }
 
 error_text!(FocusCalibrationError {
     Self::TooFew => "at least two different positions are needed",
     Self::Distance { index, reason } => "sample {}: {reason}" (index + 1),
     Self::Direction => "larger positions must be nearer focus",
+    Self::NotFinite => "a number of the focus calibration is not finite",
 });
 
 impl FocusCalibration {
@@ -88,8 +91,11 @@ impl FocusCalibration {
         if per_step_m <= 0.0 {
             return Err(FocusCalibrationError::Direction);
         }
-        let rms_m = nalgebra::ComplexField::sqrt(((zz - per_step_m * pz) / count).max(0.0));
-        Ok(Self { lens, zero_m: mean_z - per_step_m * mean_p, per_step_m, rms_m })
+        let (zero_m, square) = (mean_z - per_step_m * mean_p, (zz - per_step_m * pz) / count);
+        if ![per_step_m, zero_m, square].iter().all(|x| x.is_finite()) {
+            return Err(FocusCalibrationError::NotFinite);
+        }
+        Ok(Self { lens, zero_m, per_step_m, rms_m: nalgebra::ComplexField::sqrt(square.max(0.0)) })
     }
 
     /// The root of the mean squared distance of the samples from the line, m of the image distance.
@@ -112,6 +118,9 @@ impl FocusCalibration {
 
     /// The deviation of that distance where the position is uncertain by `sigma` steps, m.
     pub fn focus_sigma_m(&self, position: u16, sigma: f32) -> Result<f32, LensError> {
+        if super::lens::finite(sigma)? < 0.0 {
+            return Err(LensError::Sigma);
+        }
         let extension = self.extension_m(position);
         if extension <= 0.0 {
             return Err(LensError::ImageWithinFocus);
@@ -133,5 +142,24 @@ impl FocusCalibration {
         };
         // A cast of what is out of range is the nearest end.
         Ok(crate::math::round((extension - self.zero_m) / self.per_step_m) as u16)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lenses_beyond_the_numbers_and_deviations_below_zero_are_refused() {
+        let fit = |focal, near, far| {
+            let lens = ThinLens::new(focal).expect("a focal length");
+            FocusCalibration::fit(lens, &[(0, far), (1000, near)])
+        };
+        // The square of the difference of two image distances overflows, and the largest of them does.
+        assert_eq!(fit(1e22, 2e22, 3e22), Err(FocusCalibrationError::NotFinite));
+        assert_eq!(fit(2e38, 2.1e38, 3e38), Err(FocusCalibrationError::NotFinite));
+        let lens = fit(0.004, 0.2, 2.0).expect("a lens");
+        assert_eq!(lens.focus_sigma_m(500, -1.0), Err(LensError::Sigma));
+        assert_eq!(lens.focus_sigma_m(500, f32::NAN), Err(LensError::NotFinite));
     }
 }

@@ -40,10 +40,12 @@ impl PatchOrientation {
         best.1
     }
 
-    /// A point so far to the right and down, turned; rounded to the nearest pixel, halves up.
+    /// A point so far to the right and down, turned; rounded to the nearest pixel, halves up. Numbers beyond
+    /// 16 bits are taken for the nearest that has 16.
     #[inline]
     pub fn of(self, right: i32, down: i32) -> (i32, i32) {
         let (cosine, sine) = self.cosine_and_sine();
+        let [right, down] = [right, down].map(|x| x.clamp(i16::MIN.into(), i16::MAX.into()));
         let round = |x: i32| (x + (1 << 13)) >> 14;
         (round(right * cosine - down * sine), round(right * sine + down * cosine))
     }
@@ -71,6 +73,8 @@ mod tests {
         assert_eq!(PatchOrientation::new(4).of(10, 0), (7, 7));
         assert_eq!(PatchOrientation::new(8).of(10, -3), (3, 10));
         assert_eq!(PatchOrientation::new(28).of(10, 0), (7, -7));
+        assert_eq!(PatchOrientation::new(4).of(i32::MAX, i32::MIN), (46339, -1));
+        assert_eq!(PatchOrientation::new(24).of(i32::MAX, i32::MIN), (-32768, -32767));
         assert_eq!(PatchOrientation::towards(-5, 5), PatchOrientation::new(12));
         assert_eq!(PatchOrientation::towards(0, 0), PatchOrientation::NONE);
     }

@@ -47,10 +47,13 @@ impl Breathing {
     }
 
     /// The column or row of the frame, of `size`, that is nearest to what column or row `place` of the
-    /// reference shows; the last one inside of the frame where it shows no such place.
+    /// reference shows; the last one inside of the frame where it shows no such place. Numbers beyond 32 bits
+    /// are taken for the largest that has 32.
     pub fn source(self, place: usize, size: usize) -> usize {
+        // So much that nothing overflows.
+        let [place, size] = [place, size].map(|x| x.min(u32::MAX as usize));
         let (before, part) = self.between(place, size);
-        before + usize::from(part >= 128)
+        (before + usize::from(part >= 128)).min(size.saturating_sub(1))
     }
 
     /// The column or row before what column or row `place` of the reference shows, and how far it is from
@@ -65,5 +68,22 @@ impl Breathing {
         let off = 2 * place as i64 - last;
         let place = ((off * i64::from(self.scale) + (last << 16)) >> 9).clamp(0, last << 8);
         ((place >> 8) as usize, (place & 255) as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_beside_the_frame_are_its_last_ones() {
+        let scales = [0.5, 1.0, 1.5, 2.0].map(|scale| Breathing::new(scale).expect("a scale"));
+        for breathing in scales {
+            let places = [9, 1000, usize::MAX].map(|place| breathing.source(place, 10));
+            assert_eq!(places[1..], [9; 2], "{breathing:?}");
+            assert!((7..=9).contains(&places[0]), "{breathing:?}: {}", places[0]);
+            assert_eq!(breathing.source(3, 0), 0, "{breathing:?}");
+            let _ = breathing.source(usize::MAX, usize::MAX);
+        }
     }
 }

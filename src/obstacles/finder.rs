@@ -235,10 +235,12 @@ impl ObstaclesView<'_> {
         if is_finished { self.state.blind } else { Some(BlindReason::NoFrame) }
     }
 
-    /// The disparity of a cell of the frame that was finished last, until the next one begins.
+    /// The disparity of a cell of the frame that was finished last, until the next one begins; none of a cell
+    /// that is not there.
     pub fn cell(&self, column: usize, row: usize) -> Disparity {
         let Some(setup) = self.setup().filter(|_| self.state.is_finished) else { return Disparity::NONE };
-        let cell = self.cells.get(row * setup.columns + column).filter(|_| column < setup.columns);
+        let is_inside = column < setup.columns && row < setup.rows;
+        let cell = is_inside.then(|| self.cells.get(row * setup.columns + column)).flatten();
         cell.copied().unwrap_or(Disparity::NONE)
     }
 }

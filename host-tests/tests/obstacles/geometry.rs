@@ -279,6 +279,13 @@ fn wrong_configurations_and_sizes_are_named() {
     // Rows out of place, too short, and before a start are ignored.
     small.push(0, &[Disparity::ZERO; 160], &[PixelFlags::CLEAR; 160], &[]);
     assert_eq!(small.as_mut_view().cell(0, 0), Disparity::NONE);
+    let mut wide = map.finder(&ObstacleConfig::default());
+    map.rows(&mut wide, |_| true);
+    assert_eq!(wide.finish(), Ok(()));
+    let view = wide.as_mut_view();
+    assert!(view.cell(39, 23).is_some());
+    let outside = [(40, 23), (39, 24), (0, usize::MAX), (usize::MAX, 0), (usize::MAX, usize::MAX)];
+    assert!(outside.iter().all(|&(column, row)| view.cell(column, row).is_none()));
     // The memory of the 160 columns of a small camera.
     let bytes = size_of::<stereopsis::obstacles::Obstacles<40, 24>>();
     assert!(bytes <= 4096, "{bytes} bytes");

@@ -7,7 +7,8 @@
 pub enum MatchError {
     /// The matcher was not configured.
     NotStarted,
-    /// All lines of the frame, and the flush after them, were taken.
+    /// No such row is due: a line after the frame's last one, a flush before that one, or one after the last
+    /// result.
     FrameDone,
     /// A line is shorter than the width configured.
     LineTooShort {
@@ -30,7 +31,7 @@ pub enum MatchError {
 
 error_text!(MatchError {
     Self::NotStarted => "the matcher was not started",
-    Self::FrameDone => "the frame has no more lines",
+    Self::FrameDone => "the frame has no such line due",
     Self::LineTooShort { needed } => "a line must have {needed} pixels",
     Self::Winners { needed } => "a row must have {needed} winners",
     Self::WinnerRefused { column } => "the winner in column {column} is none that a search can have",

@@ -66,7 +66,8 @@ where
         Ok(())
     }
 
-    /// Goes on below the image's last row, until the last results are out.
+    /// Goes on below the image's last row, until the last results are out. Before the last row went in, and
+    /// after the last result, it is [`MatchError::FrameDone`].
     pub fn flush_winners(&mut self, winners: &[WinnerRecord]) -> Result<(), MatchError> {
         self.step_winners(None, false, winners)
     }

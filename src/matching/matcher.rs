@@ -139,7 +139,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         self.step(Some([left, right]))
     }
 
-    /// Goes on below the image's last row, until the last results are out.
+    /// Goes on below the image's last row, until the last results are out. Before the last row went in, and
+    /// after the last result, it is [`MatchError::FrameDone`].
     pub fn flush(&mut self) -> Result<(), MatchError> {
         self.step(None)
     }

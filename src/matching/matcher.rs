@@ -195,7 +195,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
             answers: row_mut(self.finished.as_flattened_mut(), index % HISTORY, width),
             flags: row_mut(self.band_flags.as_flattened_mut(), index % BAND, width),
             confidences: if self.config.confidence { confidences } else { &mut [] },
-            withheld,
+            withheld: if self.config.min_confidence > 0 { withheld } else { &mut [] },
         };
         Some((row, masks))
     }

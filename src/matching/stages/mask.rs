@@ -9,7 +9,7 @@ pub(in crate::matching) struct Masked<'a> {
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
     pub confidences: &'a mut [u8],
-    /// The answers that were [withheld](super::withhold), which the rows below look at.
+    /// The answers that were [withheld](super::withhold), which the rows below look at; empty where none are.
     pub withheld: &'a mut [u16],
 }
 
@@ -28,16 +28,20 @@ impl Masked<'_> {
     }
 
     /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest
-    /// pixel; one left of it was not seen.
+    /// pixel; one left of it was not seen. A withheld answer is judged as one that is there: the rows below
+    /// would be given it back.
     pub(in crate::matching) fn take_away(self, left: &[u8], right: &[u8]) {
         const HALF: u32 = Disparity::ONE as u32 / 2;
-        let mut confidences = self.confidences.iter_mut();
+        let (mut confidences, mut withheld) = (self.confidences.iter_mut(), self.withheld.iter());
         let row = self.answers.iter_mut().zip(self.flags).zip(left).enumerate();
         for (x, ((answer, flags), &seen)) in row {
             let confidence = confidences.next();
-            let away = (u32::from(answer.raw()) + HALF) >> Disparity::FRACTION_BITS;
+            // No answer is the largest number.
+            let found = answer.raw().min(withheld.next().copied().unwrap_or(Disparity::NONE.raw()));
+            let away = (u32::from(found) + HALF) >> Disparity::FRACTION_BITS;
             let partner = x.checked_sub(away as usize).and_then(|partner| right.get(partner));
-            let is_lost = seen == 0 || (answer.is_some() && partner.is_none_or(|&seen| seen == 0));
+            let is_found = found != Disparity::NONE.raw();
+            let is_lost = seen == 0 || (is_found && partner.is_none_or(|&seen| seen == 0));
             if is_lost {
                 (*answer, *flags) = (Disparity::NONE, PixelFlags::OUTSIDE);
                 if let Some(confidence) = confidence {
@@ -89,5 +93,18 @@ mod tests {
         row.take_away(&[0, 1, 1, 0, 1], &[1; 5]);
         assert_eq!(answers, [NONE, NONE, d(48), NONE, NONE]);
         assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, outside]);
+        // Withheld: 1.5 px, rounded up to the pixel that was not seen, and 1.47 px.
+        let (mut answers, unsure) = ([NONE; 5], PixelFlags::AMBIGUOUS);
+        let mut flags = [unsure; 5];
+        let none = NONE.raw();
+        let row = Masked {
+            index: 0,
+            answers: &mut answers,
+            flags: &mut flags,
+            confidences: &mut [0; 5],
+            withheld: &mut [none, none, 48, 47, none],
+        };
+        row.take_away(&[1; 5], &[0, 1, 1, 1, 1]);
+        assert_eq!((answers, flags), ([NONE; 5], [unsure, unsure, outside, unsure, unsure]));
     }
 }

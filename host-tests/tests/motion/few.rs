@@ -6,14 +6,14 @@ use stereopsis::imaging::Picture;
 use stereopsis::motion::odometry::{Frame, OdometryConfig, State, StereoOdometry};
 use stereopsis_host::scene::Random;
 
-/// A wall that slides past a pair whose right camera slips by some px now and then: the loss of a pose that no
-/// point agrees with is bounded, and must not pass for that of a camera that stands.
+/// A wall that slides past a pair whose right camera slips by some px now and then: the loss of a pose that
+/// no point agrees with is bounded, and must not pass for that of a camera that stands.
 #[test]
 fn poses_that_few_points_agree_with_are_not_told() {
     const SIZE: [u16; 2] = [120, 90];
     let rig = RectifiedRig::new(110.0, 0.1, 59.5, 44.5).expect("a rig");
     let mut told = 0;
-    for seed in 0..60 {
+    for seed in 0..20 {
         let mut random = Random::new(seed);
         let knots: Vec<_> = (0..60 * 20).map(|_| 255.0 * random.unit()).collect();
         let picture = |at: f64| {
@@ -50,5 +50,5 @@ fn poses_that_few_points_agree_with_are_not_told() {
             }
         }
     }
-    assert!(told > 10, "{told} frames");
+    assert!(told > 3, "{told} frames");
 }

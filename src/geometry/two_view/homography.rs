@@ -23,12 +23,13 @@ pub struct Homography<T: Real> {
     inverse: Matrix3<T>,
 }
 
-deserialize_checked! { Homography<T> { matrix: Matrix3<T> } by |stored| Self::checked(&stored.matrix, READ) }
+// An inverse that was stored has been rounded: less is asked of what is read.
+deserialize_checked! {
+    Homography<T> { matrix: Matrix3<T> } by |stored| Self::checked(&stored.matrix, LEAST / 4.0)
+}
 
-/// How far from singular a matrix has to be, in steps between numbers; less when it is read, for an inverse
-/// that was stored has been rounded.
-const GIVEN: f64 = 16.0;
-const READ: f64 = 4.0;
+/// How far from singular a matrix has to be, in steps between numbers.
+const LEAST: f64 = 16.0;
 
 /// Why there is no homography.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -58,7 +59,7 @@ error_text!(HomographyError {
 impl<T: Real> Homography<T> {
     /// The homography of a matrix, of any scale but zero.
     pub fn from_matrix(matrix: &Matrix3<T>) -> Result<Self, HomographyError> {
-        Self::checked(matrix, GIVEN)
+        Self::checked(matrix, LEAST)
     }
 
     /// The homography of a matrix that is farther from singular than `least`.

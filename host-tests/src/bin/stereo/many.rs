@@ -33,7 +33,8 @@ pub struct Line {
     median_px: Option<f64>,
     time_ms: Option<f64>,
     state_bytes: Option<u64>,
-    /// What is wrong with the pair, as in its summary.json, or why it has no results.
+    /// What is wrong with the pair, as in its summary.json: its fault, or else its warnings; or why it has no
+    /// results.
     fault: Option<String>,
 }
 
@@ -51,7 +52,7 @@ impl Line {
             median_px: summary["disparity_px"]["median"].as_f64(),
             time_ms: summary["time_ms"].as_f64(),
             state_bytes: summary["state_bytes"].as_u64(),
-            fault: summary["pair"]["fault"].as_str().map(str::to_owned),
+            fault: wrong(&summary["pair"]),
         })
     }
 
@@ -60,6 +61,15 @@ impl Line {
         let (density, median_px, time_ms, state_bytes) = (None, None, None, None);
         Self { frame, input, density, median_px, time_ms, state_bytes, fault: Some(error.to_string()) }
     }
+}
+
+/// What a summary says is wrong with its pair.
+fn wrong(pair: &Value) -> Option<String> {
+    let fault = pair["fault"].as_str().map(str::to_owned);
+    fault.or_else(|| {
+        let warnings: Vec<_> = pair["warnings"].as_array()?.iter().filter_map(Value::as_str).collect();
+        (!warnings.is_empty()).then(|| warnings.join("; "))
+    })
 }
 
 /// Matches all of them. A pair that cannot be is named, and the others are matched.

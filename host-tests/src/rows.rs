@@ -1,11 +1,11 @@
 //! How well the rows of a pair agree: features of both pictures, and by how much the right camera is turned
 //! by them.
 
-use crate::pair::PairMatches;
+use crate::pair::{PairMatches, RowFit};
 use serde::Serialize;
 use stereopsis::geometry::{
     camera::{Camera, ImageSize},
-    rectify::{RowAlignment, RowHealth, RowMeter},
+    rectify::{RowAlignment, RowHealth},
 };
 
 /// How far rows may be off before answers are lost, px.
@@ -32,10 +32,26 @@ pub struct Rows {
     pub roll_deg: f64,
     /// Its standard deviation.
     pub roll_sigma_deg: f64,
+    /// By how much it is turned about the axis that points down, degrees, as far as rows show it, which is
+    /// little; absent when no calibration tells the focal length.
+    pub yaw_deg: Option<f64>,
+    /// Its standard deviation.
+    pub yaw_sigma_deg: Option<f64>,
     /// Features that were matched.
     pub matches: usize,
+    /// The share of them whose rows these angles explain, up to a pixel.
+    pub agreeing: f64,
+    /// How many times as large as the left image the right one is, where angles alone do not explain the rows
+    /// of most; else 1.
+    pub scale: f64,
     /// `good`: under 0.25 px; `worn`: up to 0.5 px, answers are lost; `bad`: more.
     pub health: &'static str,
+    /// What the yaw does to rows, and its standard deviation, px.
+    #[serde(skip)]
+    by_yaw_px: [f64; 2],
+    /// Whether most of the matches say so: where most are wrong, any angle explains some of them.
+    #[serde(skip)]
+    is_agreed: bool,
 }
 
 impl Rows {
@@ -46,19 +62,19 @@ impl Rows {
         let (w, h) = (f64::from(size.width), f64::from(size.height));
         let assumed = Camera::new(w, w, (w - 1.0) / 2.0, (h - 1.0) / 2.0).ok()?;
         let by = camera.unwrap_or(&assumed);
-        let seen = &matches.in_rows;
-        let mut meter = RowMeter::new();
-        meter.add(by, seen).ok()?;
-        Some(Self::of(&meter.alignment().ok()?, by, camera.is_some(), size, seen.len()))
+        let fit = RowFit::of(&matches.in_rows, by)?;
+        // What is turned far, or larger, has many matches in other rows, and rows that no small turn
+        // explains.
+        let of_all = || RowFit::of(&matches.all, by).filter(RowFit::is_agreed);
+        let scaled = || {
+            RowFit::with_scale(&matches.in_rows, by).filter(|it| it.is_agreed() && it.is_better_than(&fit))
+        };
+        let fit = if fit.is_agreed() { fit } else { of_all().or_else(scaled).unwrap_or(fit) };
+        Some(Self::of(&fit, by, camera.is_some(), size, fit.matches))
     }
 
-    fn of(
-        found: &RowAlignment<f64>,
-        camera: &Camera<f64>,
-        is_calibrated: bool,
-        size: ImageSize,
-        matches: usize,
-    ) -> Self {
+    fn of(fit: &RowFit, camera: &Camera<f64>, is_calibrated: bool, size: ImageSize, matches: usize) -> Self {
+        let found = &fit.alignment;
         // What an angle alone does to rows.
         let alone = |axis: usize, rad: [f64; 3]| {
             let mut rotation_rad = [0.0; 3];
@@ -74,7 +90,13 @@ impl Rows {
             pitch_sigma_deg: degrees(found.sigma_rad[0]),
             roll_deg: found.rotation_rad[2].to_degrees(),
             roll_sigma_deg: found.sigma_rad[2].to_degrees(),
+            yaw_deg: degrees(found.rotation_rad[1]),
+            yaw_sigma_deg: degrees(found.sigma_rad[1]),
+            by_yaw_px: [alone(1, found.rotation_rad), alone(1, found.sigma_rad)],
             matches,
+            agreeing: fit.agreeing,
+            scale: fit.scale,
+            is_agreed: fit.is_agreed(),
             health: match found.health(camera, size) {
                 RowHealth::Good => "good",
                 RowHealth::Worn => "worn",
@@ -96,24 +118,41 @@ impl Rows {
 
     /// Whether with a probability of 95 % the rows are on that side of what matching bears.
     fn is_sure(&self) -> bool {
-        (self.error_px - BORNE_PX).abs() >= ONE_SIDED_95 * self.sigma_px
+        self.is_agreed && (self.error_px - BORNE_PX).abs() >= ONE_SIDED_95 * self.sigma_px
     }
 
     /// What is wrong, where with a probability of 95 % it is more than matching bears.
     pub fn warning(&self) -> Option<String> {
+        if self.is_agreed && self.scale != 1.0 {
+            let (share, size) =
+                (100.0 * (self.scale - 1.0), if self.scale > 1.0 { "larger" } else { "smaller" });
+            return Some(format!(
+                "the right image is {:.1} % {size} than the left one, so that rows do not agree: the focal \
+                 lengths differ, or the pair is not rectified; calibrate anew or rectify",
+                share.abs()
+            ));
+        }
         let is_off = self.error_px > BORNE_PX && self.is_sure();
-        let turned = match self.pitch_deg {
+        let mut turned = match self.pitch_deg {
             Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees"),
             None => {
                 let side = if self.lower_px < 0.0 { "higher" } else { "lower" };
                 format!("the right image stands {:.2} px {side} than the left one", self.lower_px.abs())
             }
         };
+        turned += &format!(", roll {:+.2} degrees", self.roll_deg);
+        let [by_yaw, sigma] = self.by_yaw_px;
+        if by_yaw > BORNE_PX && by_yaw > 3.0 * sigma {
+            turned += &match self.yaw_deg {
+                Some(yaw) => format!(", yaw {yaw:+.2} degrees"),
+                None => format!(", and {by_yaw:.2} px are of a turn about the vertical or another scale"),
+            };
+        }
         is_off.then(|| {
             format!(
-                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned}, \
-                 roll {:+.2} degrees; calibrate anew or rectify",
-                self.error_px, self.sigma_px, self.roll_deg
+                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned}; \
+                 calibrate anew or rectify",
+                self.error_px, self.sigma_px
             )
         })
     }

@@ -1,6 +1,8 @@
 //! What is wrong with a pair, as far as features tell.
 
-use super::matches::{FEWEST, PairMatches, ROWS_APART, STILL};
+use super::agreement::FEWEST;
+use super::lacks::Lacks;
+use super::matches::{PairMatches, STILL};
 use super::search::small_map;
 use image::{GrayImage, imageops};
 use serde::Serialize;
@@ -24,6 +26,12 @@ pub enum PairFault {
     RightOnItsSide,
     /// The right picture is mirrored.
     RightMirrored,
+    /// The left picture stands on its head.
+    LeftUpsideDown,
+    /// The left picture stands on its side.
+    LeftOnItsSide,
+    /// The left picture is mirrored.
+    LeftMirrored,
     /// The right picture stands much higher or lower than the left one.
     RowsApart,
     /// The pictures have next to nothing in common.
@@ -49,6 +57,9 @@ impl fmt::Display for PairFault {
             Self::RightUpsideDown => "the right image is turned by 180 degrees; turn it as the left one is",
             Self::RightOnItsSide => "the right image is turned by 90 degrees; turn it as the left one is",
             Self::RightMirrored => "the right image is mirrored; mirror it back",
+            Self::LeftUpsideDown => "the left image is turned by 180 degrees; turn it as the right one is",
+            Self::LeftOnItsSide => "the left image is turned by 90 degrees; turn it as the right one is",
+            Self::LeftMirrored => "the left image is mirrored; mirror it back",
             Self::RowsApart => {
                 "the right image stands over 12 px higher or lower than the left one: the pair is not \
                  rectified, or not by the calibration of these cameras; give --rectify with that, or align \
@@ -62,14 +73,48 @@ impl fmt::Display for PairFault {
     }
 }
 
-/// How a right picture is brought back to the left one's orientation.
-type Cure = fn(&GrayImage) -> GrayImage;
-const CURES: [(PairFault, Cure); 5] = [
-    (PairFault::RightUpsideDown, |right| imageops::rotate180(right)),
-    (PairFault::RightOnItsSide, |right| imageops::rotate90(right)),
-    (PairFault::RightOnItsSide, |right| imageops::rotate270(right)),
-    (PairFault::RightMirrored, |right| imageops::flip_horizontal(right)),
-    (PairFault::RightMirrored, |right| imageops::flip_vertical(right)),
+/// How a picture is brought back to the other one's orientation; what is wrong where that is the right one,
+/// and where it is the left one.
+struct Cure {
+    turned: fn(&GrayImage) -> GrayImage,
+    right: PairFault,
+    left: PairFault,
+    /// Whether the pair that this makes of the wrong picture is one with left and right exchanged.
+    exchanges: bool,
+}
+
+const CURES: [Cure; 5] = [
+    Cure {
+        turned: |picture| imageops::rotate180(picture),
+        right: PairFault::RightUpsideDown,
+        left: PairFault::LeftUpsideDown,
+        exchanges: true,
+    },
+    Cure {
+        turned: |picture| imageops::rotate90(picture),
+        right: PairFault::RightOnItsSide,
+        left: PairFault::LeftOnItsSide,
+        exchanges: false,
+    },
+    Cure {
+        turned: |picture| imageops::rotate270(picture),
+        right: PairFault::RightOnItsSide,
+        left: PairFault::LeftOnItsSide,
+        exchanges: false,
+    },
+    Cure {
+        turned: |picture| imageops::flip_horizontal(picture),
+        right: PairFault::RightMirrored,
+        left: PairFault::LeftMirrored,
+        exchanges: true,
+    },
+    Cure {
+        turned: |picture| imageops::flip_vertical(picture),
+        right: PairFault::RightMirrored,
+        // With either mirrored it is a pair, and nothing tells which one should be.
+        left: PairFault::RightMirrored,
+        exchanges: false,
+    },
 ];
 
 /// The share of matches that stay where they are in pictures of one camera: noise and compression move some.
@@ -81,29 +126,29 @@ const CHANCE: f64 = 0.25;
 pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFault> {
     let [left, right] = pictures;
     if left.as_raw() == right.as_raw() {
-        return Some(PairFault::Same);
+        // What sees nothing is not known to be one camera.
+        return (!is_blank(left)).then_some(PairFault::Same);
     }
     if matches.moves_along_columns() && both_turned(pictures) {
         return Some(PairFault::BothOnTheirSides);
     }
-    if matches.is_aligned(left.width()) {
-        if matches.share_within(STILL) >= STILL_SHARE {
+    if matches.is_aligned() {
+        if matches.share_within(STILL) >= STILL_SHARE && !matches.has_another_surface() {
             return Some(PairFault::Still);
         }
-        let moved: Vec<_> = matches.disparities_px().into_iter().filter(|d| d.abs() > STILL).collect();
-        let negative = moved.iter().filter(|&&d| d < 0.0).count();
-        let is_swapped = moved.len() >= FEWEST && 20 * negative > 17 * moved.len();
         // A mirrored picture of something symmetric has matches too, and fewer than one that is put right.
-        return is_swapped.then(|| cured(pictures, matches.in_rows.len()).unwrap_or(PairFault::Swapped));
+        if matches.are_negative() {
+            return Some(cured(pictures, matches.in_rows.len()).unwrap_or(PairFault::Swapped));
+        }
+        return if matches.is_sure() { None } else { cured(pictures, 2 * matches.in_rows.len()) };
     }
-    if let Some(fault) = cured(pictures, matches.in_rows.len()) {
+    if let Some(fault) = cured(pictures, matches.most_in_rows()) {
         return Some(fault);
     }
-    let in_columns = matches.all.iter().filter(|s| (s.first.x - s.second.x).abs() < ROWS_APART).count();
-    if in_columns >= FEWEST && 2 * in_columns > matches.all.len() && both_turned(pictures) {
+    if matches.are_in_columns() && both_turned(pictures) {
         return Some(PairFault::BothOnTheirSides);
     }
-    if matches.are_rows_apart(left.height()) {
+    if matches.are_rows_apart() {
         return Some(PairFault::RowsApart);
     }
     // Pictures with texture that have nothing in common; without any, nothing is said. A pattern that repeats
@@ -112,26 +157,42 @@ pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFau
         .map(|picture| PairMatches::find([picture, picture], None).map_or(0, |found| found.in_rows.len()));
     let has_texture = own[0].min(own[1]) >= 8 * FEWEST;
     let has_answers = || small_map(pictures).is_some_and(|(map, _)| map.density() > CHANCE);
-    (has_texture && 16 * matches.in_rows.len() < own[0].min(own[1]) && !has_answers())
+    // Of a camera that is covered noise is what has features.
+    let is_covered = || Lacks::less_textured(&pictures.map(|picture| Lacks::of(picture, None))).is_some();
+    (has_texture && 16 * matches.in_rows.len() < own[0].min(own[1]) && !has_answers() && !is_covered())
         .then_some(PairFault::TwoScenes)
 }
 
-/// How the right picture stands, where it has more matches when it is turned or mirrored: what has the most.
+/// Whether a picture has one grey level.
+pub fn is_blank(picture: &GrayImage) -> bool {
+    let first = picture.as_raw().first();
+    picture.iter().all(|grey| Some(grey) == first)
+}
+
+/// How one of the pictures stands, where there are more matches when it is turned or mirrored: what has the
+/// most.
 fn cured([left, right]: [&GrayImage; 2], fewest: usize) -> Option<PairFault> {
-    let in_rows = |(fault, cure): (PairFault, Cure)| {
-        let cured = cure(right);
-        let found = (cured.dimensions() == left.dimensions())
-            .then(|| PairMatches::find([left, &cured], None).ok())
-            .flatten()
-            .filter(|found| found.is_aligned(cured.width()))?;
-        Some((found.in_rows.len(), fault))
+    let aligned = |left: &GrayImage, right: &GrayImage| {
+        let is_one_size = left.dimensions() == right.dimensions();
+        let found = is_one_size.then(|| PairMatches::find([left, right], None).ok()).flatten()?;
+        found.is_aligned().then_some(found)
     };
-    let best = CURES.into_iter().filter_map(in_rows).max_by_key(|(count, _)| *count)?;
+    let by = |cure: &Cure| {
+        let of_right = aligned(left, &(cure.turned)(right)).map(|found| {
+            let is_left = cure.exchanges && found.are_negative();
+            (found.in_rows.len(), if is_left { cure.left } else { cure.right })
+        });
+        // What exchanges the two is the same pair with either turned; what does not is none with the other.
+        let of_left = (!cure.exchanges).then(|| aligned(&(cure.turned)(left), right)).flatten();
+        let of_left = of_left.map(|found| (found.in_rows.len(), cure.left));
+        of_left.into_iter().chain(of_right).max_by_key(|(count, _)| *count)
+    };
+    let best = CURES.iter().filter_map(by).max_by_key(|(count, _)| *count)?;
     (best.0 > fewest).then_some(best.1)
 }
 
 /// Whether both pictures are a pair when they are turned by 90 degrees.
 fn both_turned(pictures: [&GrayImage; 2]) -> bool {
     let [left, right] = pictures.map(imageops::rotate90);
-    PairMatches::find([&left, &right], None).is_ok_and(|found| found.is_aligned(left.width()))
+    PairMatches::find([&left, &right], None).is_ok_and(|found| found.is_aligned())
 }

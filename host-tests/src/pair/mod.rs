@@ -1,18 +1,24 @@
 //! What is wrong with a pair of pictures, by the features that both show: cameras that are swapped, pictures
 //! that are turned, mirrored, the same or of two scenes, and a search that is too short.
 
+mod agreement;
+mod beyond;
+mod changes;
 mod fault;
+mod few;
 mod lacks;
 mod matches;
 mod search;
 
-pub use fault::{PairFault, fault};
+pub use agreement::RowFit;
+pub use fault::{PairFault, fault, is_blank};
 pub use matches::PairMatches;
 pub use search::search;
 
+use agreement::FEWEST;
+use beyond::Beyond;
 use image::GrayImage;
 use lacks::Lacks;
-use matches::{FEWEST, STILL};
 use serde::Serialize;
 use stereopsis::matching::Config;
 
@@ -23,15 +29,17 @@ pub struct PairCheck {
     pub matches: usize,
     /// Those of them that are in about the same rows.
     pub matches_in_rows: usize,
-    /// The range of their disparities, 2nd to 98th percentile, px; absent when there are too few.
+    /// The range of their disparities, 2nd to 98th percentile, px, of those that agree with others where
+    /// these are enough; absent when there are too few.
     pub disparity_px: Option<[f64; 2]>,
     /// What is wrong; absent when nothing seems to be.
     pub fault: Option<PairFault>,
-    /// The share of the matches that lie beyond the search.
+    /// The share of the matches that agree with others and lie beyond the search.
     pub beyond_search: f64,
     /// A search that would hold nearly all of them: `--min-disparity` and `--disparities`.
     pub search: Option<[u16; 2]>,
-    /// The share of the left picture without texture: no grey level changes by 4 within 9 x 9 pixels.
+    /// The share of the left picture without texture: within 9 x 9 pixels no grey level changes by 4 along
+    /// the row, or all change by no more than noise does.
     pub untextured: f64,
     /// That of the right one.
     pub untextured_right: f64,
@@ -49,19 +57,16 @@ pub struct PairCheck {
     pub out_of_view: Option<f64>,
     /// What is wrong with the pair and its search, and what would help: a line each.
     pub warnings: Vec<String>,
-    /// The share of the matches that lie before the search.
+    /// The shares of the left and of the right picture that are white, and that are black.
     #[serde(skip)]
-    before_search: f64,
+    exposed: [[f64; 2]; 2],
 }
 
-/// The share of the features that a search may miss, and of a picture that may be white or black, before that
-/// is said.
-const MISSED: f64 = 0.05;
+/// The share of a picture that may be white or black without texture around before that is said.
 const BADLY_EXPOSED: f64 = 0.25;
 
-/// The share of a picture that may lack the other one's texture before that is said. It is under .04 in the
-/// real pairs that the tests know, and up to .26 where one of their images is blurred or darkened.
-const LOST_TEXTURE: f64 = 0.3;
+/// How many times as bright as the other a picture is whose partner is called dark.
+const DARKER: f64 = 4.0;
 
 impl PairCheck {
     /// Looks at a pair that is to be matched, whose pictures show nothing where `valid` is 0 and have this
@@ -73,16 +78,13 @@ impl PairCheck {
         fault: Option<PairFault>,
         config: &Config,
     ) -> Self {
-        let found = matches.disparities_px();
+        let (all, surfaces) = (matches.disparities_px(), matches.surfaces_px());
+        let found = if surfaces.len() >= FEWEST { &surfaces } else { &all };
         let at =
             |share: f64| found.get((share * found.len().saturating_sub(1) as f64).round() as usize).copied();
         let range = (found.len() >= FEWEST).then(|| Some([at(0.02)?, at(0.98)?])).flatten();
-        let first = f64::from(config.min_disparity);
-        let last = first + f64::from(config.disparities) - 1.0;
-        let share = |is_so: &dyn Fn(f64) -> bool| {
-            range.map_or(0.0, |_| found.iter().filter(|&&d| is_so(d)).count() as f64 / found.len() as f64)
-        };
-        let before_search = share(&|d| d < first - STILL);
+        let search = if fault.is_none() { search(pictures, matches) } else { None };
+        let beyond = Beyond::of(matches, config, search);
         let lacks = [0, 1].map(|side| Lacks::of(pictures[side], valid.map(|valid| valid[side])));
         let of_both = |of: fn(&Lacks) -> f64| lacks.iter().map(of).sum::<f64>() / 2.0;
         let mut check = Self {
@@ -90,8 +92,8 @@ impl PairCheck {
             matches_in_rows: matches.in_rows.len(),
             disparity_px: range,
             fault,
-            beyond_search: before_search + share(&|d| d > last),
-            search: if fault.is_none() { search(pictures, matches) } else { None },
+            beyond_search: range.map_or(0.0, |_| beyond.share()),
+            search,
             untextured: lacks[0].untextured,
             untextured_right: lacks[1].untextured,
             over_exposed: of_both(|lacks| lacks.over_exposed),
@@ -101,14 +103,19 @@ impl PairCheck {
             masked: lacks[0].masked,
             out_of_view: range.and(at(0.5)).map(|d| (d / f64::from(pictures[0].width())).clamp(0.0, 1.0)),
             warnings: Vec::new(),
-            before_search,
+            exposed: lacks.each_ref().map(|lacks| [lacks.over_exposed, lacks.under_exposed]),
         };
         let fault = check.fault.map(|fault| fault.to_string());
         // What is black or white lacks texture, too, and what is seen the wrong way round may seem to.
         let light = exposure_warning(&lacks);
-        let texture = if light.is_none() && fault.is_none() { check.texture_warning() } else { None };
-        let found = [fault, check.search_warning(config), light, texture];
-        check.warnings = found.into_iter().flatten().collect();
+        let texture = if light.is_none() && fault.is_none() { texture_warning(&lacks) } else { None };
+        let nothing = (fault.is_none() && light.is_none() && texture.is_none())
+            .then(|| unmatched_warning(matches))
+            .flatten();
+        let is_known = range.is_some() && search.is_some();
+        let beyond = if is_known { beyond.warnings() } else { [None, None] };
+        let found = [fault].into_iter().chain(beyond).chain([light, texture, nothing]);
+        check.warnings = found.flatten().collect();
         check
     }
 
@@ -116,46 +123,6 @@ impl PairCheck {
     pub fn with_warning(mut self, warning: Option<String>) -> Self {
         self.warnings.extend(warning);
         self
-    }
-
-    /// What is to be known about the search, with a cure, where it misses what features show.
-    fn search_warning(&self, config: &Config) -> Option<String> {
-        let ([first, last], [min_disparity, disparities]) = (self.disparity_px?, self.search?);
-        if self.beyond_search <= MISSED {
-            return None;
-        }
-        if config.min_disparity == 0 && self.before_search > MISSED {
-            return Some(format!(
-                "{:.0} % of the features have disparities below 0, down to {first:.0} px, where nothing is \
-                 searched; shift the right image to the left by as much, or rectify the pair anew",
-                100.0 * self.before_search
-            ));
-        }
-        let searched = [config.min_disparity, config.disparities];
-        let cure = if searched == [min_disparity, disparities] {
-            format!("at most {disparities} can be searched: make the images smaller")
-        } else {
-            format!("give --min-disparity {min_disparity} --disparities {disparities}")
-        };
-        Some(format!(
-            "{:.0} % of the features lie beyond disparities {} to {}, where they are from {first:.0} to \
-             {last:.0} px; {cure}",
-            100.0 * self.beyond_search,
-            searched[0],
-            searched[0] + searched[1] - 1
-        ))
-    }
-
-    /// What is to be known about a camera that sees less than the other one.
-    fn texture_warning(&self) -> Option<String> {
-        let shares = [(self.lost_texture, "left", "right"), (self.lost_texture_right, "right", "left")];
-        let &(share, side, other) = shares.iter().find(|(share, ..)| *share > LOST_TEXTURE)?;
-        Some(format!(
-            "{:.0} % of the {side} image lacks the texture that the {other} one has in the same rows, and \
-             what is answered there is a guess; see whether the {side} camera is covered, dirty or out of \
-             focus",
-            100.0 * share
-        ))
     }
 
     /// What the pictures lack, in a line.
@@ -172,11 +139,47 @@ impl PairCheck {
     }
 }
 
+/// What is to be known about features of both pictures of which next to none are the same.
+fn unmatched_warning(matches: &PairMatches) -> Option<String> {
+    let [left, right] = matches.features;
+    (left.min(right) >= 8 * FEWEST && matches.all.len() < FEWEST).then(|| {
+        format!(
+            "of {left} features in the left image and {right} in the right one {} are the same: the images \
+             show different things, one is out of focus, or all of it repeats; whether this is a pair, and \
+             what has to be searched, is not known",
+            matches.all.len()
+        )
+    })
+}
+
+/// What is to be known about a camera that sees less than the other one.
+fn texture_warning(lacks: &[Lacks; 2]) -> Option<String> {
+    let side = Lacks::less_textured(lacks)?;
+    let (of, other) = (&lacks[side], &lacks[1 - side]);
+    let names = ["left", "right"];
+    let (side, other_side) = (names[side], names[1 - side]);
+    let cause = if DARKER * of.mean < other.mean {
+        format!(
+            "is dark: its mean grey level is {:.0}, that of the other one {:.0}; expose it longer, or see \
+             what covers it",
+            of.mean, other.mean
+        )
+    } else {
+        "is covered, dirty or out of focus".to_owned()
+    };
+    Some(format!(
+        "{:.0} % of the {side} image lacks the texture that the {other_side} one has in the same rows, and \
+         what is answered there is a guess; see whether the {side} camera {cause}",
+        100.0 * of.lost(other)
+    ))
+}
+
 /// What is to be known about the light: of both pictures, or of the one that lacks it.
 fn exposure_warning(lacks: &[Lacks; 2]) -> Option<String> {
-    let said = |of: fn(&Lacks) -> f64, what: &str, cure: &str| {
+    // Where there is texture around, as of dots on black, there is something to be matched.
+    let said = |of: fn(&Lacks) -> f64, blank: fn(&Lacks) -> f64, what: &str, cure: &str| {
         let [left, right] = lacks.each_ref().map(of);
-        let (share, images) = match [left, right].map(|share| share > BADLY_EXPOSED) {
+        let (share, images) = match lacks.each_ref().map(|lacks| blank(lacks) > BADLY_EXPOSED) {
             [true, true] => ((left + right) / 2.0, "images are"),
             [true, false] => (left, "left image is"),
             [false, true] => (right, "right image is"),
@@ -185,8 +188,10 @@ fn exposure_warning(lacks: &[Lacks; 2]) -> Option<String> {
         let percent = 100.0 * share;
         Some(format!("{percent:.0} % of the {images} {what}, where nothing can be matched; {cure}"))
     };
-    said(|lacks| lacks.over_exposed, "over-exposed", "expose them shorter").or_else(|| {
-        let cure = "expose them longer, or mask what is a border (--valid-left, --valid-right)";
-        said(|lacks| lacks.under_exposed, "black", cure)
-    })
+    said(|lacks| lacks.over_exposed, |lacks| lacks.white, "over-exposed", "expose them shorter").or_else(
+        || {
+            let cure = "expose them longer, or mask what is a border (--valid-left, --valid-right)";
+            said(|lacks| lacks.under_exposed, |lacks| lacks.black, "black", cure)
+        },
+    )
 }

@@ -1,6 +1,7 @@
 //! The search that holds what a pair shows.
 
-use super::matches::{FEWEST, PairMatches};
+use super::agreement::FEWEST;
+use super::matches::PairMatches;
 use crate::map::{DisparityMap, quantile};
 use crate::run::{MemoryPair, MethodName, run};
 use image::{GrayImage, imageops};
@@ -9,17 +10,19 @@ use stereopsis::matching::{Config, Filter};
 /// Width up to which pictures are made smaller to find their range, px.
 const SMALL: u32 = 320;
 
-/// A search that holds what a pair shows: the smallest disparity and how many. It is that of the matches and
-/// of a smaller copy of the pair, matched over its whole width, with a margin. `None` where neither has
-/// answers.
+/// A search that holds what a pair shows: the smallest disparity and how many. It is that of the matches that
+/// agree with each other, of things that have several in one place, and of a smaller copy of the pair,
+/// matched over its whole width, with a margin. `None` where neither has answers.
 pub fn search(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<[u16; 2]> {
     let width = u16::try_from(pictures[0].width()).ok()?;
-    let of_matches = matches.disparities_px();
+    let (of_surfaces, of_things) = (matches.surfaces_px(), matches.things_px());
     let range = |sorted: &[f64], ends: [f64; 2]| {
         let at = |share: f64| sorted.get((share * (sorted.len() - 1) as f64).round() as usize).copied();
         if sorted.len() < FEWEST { None } else { Some([at(ends[0])?, at(ends[1])?]) }
     };
-    let ranges = [range(&of_matches, [0.02, 0.98]), small_range(pictures)];
+    let of_matches = range(&of_surfaces, [0.02, 0.98])
+        .map(|[first, last]| [first, of_things.last().map_or(last, |&thing| last.max(thing))]);
+    let ranges = [of_matches, small_range(pictures)];
     let most = f64::from(Config::MOST_DISPARITIES.min(width));
     let fits = |range: &[f64; 2]| range[1] - range[0].max(0.0) < most;
     let both = ranges.into_iter().flatten().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;

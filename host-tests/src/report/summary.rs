@@ -98,9 +98,6 @@ impl Exposure {
     }
 }
 
-/// The name of what was filled in.
-const FILLED: &str = "filled";
-
 /// Least, middle and largest value.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Spread {
@@ -238,43 +235,11 @@ impl Summary {
         self.pair.as_ref().map_or(&[], |pair| &pair.warnings)
     }
 
-    /// Why there are few answers, where fewer than half of the pixels have one: what the pictures lack, and
-    /// the flags of the pixels without.
+    /// Why there are few answers, where there are.
     fn few_answers(&self) -> Option<String> {
-        let pair = self.pair.as_ref()?;
-        let pixels = f64::from(self.width) * f64::from(self.height);
-        // Both pictures have about the same: what the right one alone lacks its camera did not see.
-        let right_alone = pair.untextured_right > pair.untextured + 0.05;
-        let lacks = [
-            ("without texture", pair.untextured),
-            ("without texture in the right image", if right_alone { pair.untextured_right } else { 0.0 }),
-            ("over-exposed", pair.over_exposed),
-            ("under-exposed", pair.under_exposed),
-            ("out of the right camera's view", pair.out_of_view.unwrap_or(0.0)),
-            ("outside of the masks", pair.masked),
-        ];
-        // What was filled is an answer.
-        let why = self.flags.iter().filter(|&(&name, _)| name != FILLED);
-        let flags = why.map(|(&name, &count)| (name, count as f64 / pixels));
-        let list = |shares: Vec<(&str, f64)>| {
-            let shares = shares.into_iter().filter(|(_, share)| *share >= 0.05);
-            shares
-                .map(|(name, share)| format!("{:.0} % {name}", 100.0 * share))
-                .collect::<Vec<_>>()
-                .join(", ")
-        };
-        let (lacks, flags) = (list(lacks.to_vec()), list(flags.collect()));
-        (self.density < 0.5).then(|| {
-            let lacks = if lacks.is_empty() { "textured, exposed and in view".to_owned() } else { lacks };
-            let asked = match self.min_confidence {
-                0 => String::new(),
-                least => format!("; --min-confidence {least} refuses what is less sure"),
-            };
-            format!(
-                "only {:.1} % of the pixels have an answer; the picture is {lacks}; flags: {flags}{asked}",
-                100.0 * self.density
-            )
-        })
+        let flags = self.flags.iter().map(|(&name, &count)| (name, count));
+        let pixels = usize::from(self.width) * usize::from(self.height);
+        self.pair.as_ref()?.few_answers(self.answers, pixels, flags, self.min_confidence)
     }
 
     /// The same with the files that were read.

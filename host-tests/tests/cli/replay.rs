@@ -280,3 +280,18 @@ fn swapped_cameras_are_refused_unless_forced() {
     assert_eq!((&printed["command"][1], &printed["inputs"][0]), (&"replay".into(), &file.as_str().into()));
     assert_eq!(printed["pair"]["search"][1], printed["disparities"]);
 }
+
+#[test]
+fn cameras_that_see_nothing_are_told() {
+    let bench = Bench::new();
+    for side in ["left", "right"] {
+        let folder = bench.path("dark").join(side);
+        fs::create_dir_all(&folder).expect("a folder");
+        image::GrayImage::new(96, 64).save(folder.join("1.png")).expect("a file");
+    }
+    let [dark, out] = ["dark", "out"].map(|name| bench.path(name).display().to_string());
+    let said = notes(&["replay", "--from", &dark, "--disparities", "32", "--method", "fast", "--out", &out]);
+    for line in ["100 % of the images are black", "only 0.0 % of the pixels have an answer"] {
+        assert!(said.contains(line), "{said}");
+    }
+}

@@ -3,7 +3,7 @@
 use image::{GrayImage, imageops};
 use stereopsis_host::pair::{PairCheck, PairFault, PairMatches, fault, search};
 use stereopsis_host::run::MethodName;
-use stereopsis_host::scene::{HardScene, Scene};
+use stereopsis_host::scene::{HardScene, Random, Scene};
 
 /// What is found of two pictures and a search.
 fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
@@ -155,6 +155,116 @@ fn a_camera_that_sees_less_than_the_other_one_is_named() {
         let [seen, hidden] = if side == "right" { lost } else { [lost[1], lost[0]] };
         assert!(seen < 0.05 && (0.4..0.5).contains(&hidden), "{found:?}");
     }
+}
+
+/// A picture with noise of a deviation.
+fn with_noise(picture: &GrayImage, sigma: f64, random: &mut Random) -> GrayImage {
+    let mut noisy = picture.clone();
+    for pixel in noisy.iter_mut() {
+        *pixel = (f64::from(*pixel) + sigma * random.gauss()).round().clamp(0.0, 255.0) as u8;
+    }
+    noisy
+}
+
+#[test]
+fn noise_is_no_texture() {
+    let (left, right) = Scene::demo().render();
+    let height = right.height();
+    let grey = image::Luma([40]);
+    let covered = GrayImage::from_pixel(right.width(), height, grey);
+    let half =
+        GrayImage::from_fn(
+            right.width(),
+            height,
+            |x, y| {
+                if 2 * y < height { *right.get_pixel(x, y) } else { grey }
+            },
+        );
+    let mut random = Random::new(7);
+    for sigma in [1.0, 2.0, 5.0] {
+        let [left, right, covered, half] =
+            [&left, &right, &covered, &half].map(|picture| with_noise(picture, sigma, &mut random));
+        let found = check(&left, &right, 64);
+        assert_eq!((found.warnings.len(), found.fault), (0, None), "{sigma}: {found:?}");
+        for (picture, share) in [(&covered, 0.95..=1.0), (&half, 0.45..=0.75)] {
+            let found = check(&left, picture, 64);
+            assert!(share.contains(&found.untextured_right), "{sigma}: {found:?}");
+            assert!(
+                found.warnings.iter().any(|line| line.contains("see whether the right camera")),
+                "{sigma}: {found:?}"
+            );
+        }
+    }
+}
+
+#[test]
+fn cameras_that_see_nothing_are_not_one_camera() {
+    for grey in [0, 90, 255] {
+        let blank = GrayImage::from_pixel(320, 240, image::Luma([grey]));
+        assert_eq!(check(&blank, &blank.clone(), 64).fault, None);
+    }
+}
+
+#[test]
+fn something_near_before_what_is_far_is_a_pair() {
+    // The left picture again, a thing 30 px to the left in it.
+    let (far, _) = Scene::demo().render();
+    let (thing, _) = HardScene::street(1.0, 3).scene.render();
+    let thing = imageops::crop_imm(&thing, 60, 60, 200, 160).to_image();
+    let with_thing = |x: i64| {
+        let mut picture = far.clone();
+        imageops::replace(&mut picture, &thing, x, 200);
+        picture
+    };
+    let mut random = Random::new(3);
+    let [left, right] = [230, 200].map(|x| with_noise(&with_thing(x), 1.0, &mut random));
+    let matches = PairMatches::find([&left, &right], None).expect("features");
+    assert_eq!(fault([&left, &right], &matches), None);
+    assert_eq!(check(&right, &left, 64).fault, Some(PairFault::Swapped));
+    let found = check(&left, &right, 16);
+    assert!(found.warnings.iter().any(|line| line.contains("lie beyond disparities 0 to 15")), "{found:?}");
+}
+
+#[test]
+fn a_left_image_that_is_turned_is_told() {
+    let (left, right) = Scene::demo().render();
+    for (left, right, fault) in [
+        (&imageops::rotate180(&left), &right, PairFault::LeftUpsideDown),
+        (&imageops::flip_horizontal(&left), &right, PairFault::LeftMirrored),
+        (&imageops::rotate90(&square(&left)), &square(&right), PairFault::LeftOnItsSide),
+    ] {
+        let found = check(left, right, 64);
+        assert_eq!(found.fault, Some(fault), "{found:?}");
+    }
+}
+
+#[test]
+fn a_pair_that_stands_a_little_too_low_is_not_turned() {
+    for (left, right) in [Scene::demo().render(), HardScene::street(1.0, 3).scene.render()] {
+        for rows in [14, 40] {
+            let (width, height) = (left.width(), left.height() - rows);
+            let part =
+                |picture: &GrayImage, from| imageops::crop_imm(picture, 0, from, width, height).to_image();
+            let found = check(&part(&left, rows), &part(&right, 0), 64);
+            assert_eq!(found.fault, Some(PairFault::RowsApart), "{rows}: {found:?}");
+        }
+    }
+}
+
+#[test]
+fn dots_on_black_are_texture() {
+    let mut random = Random::new(9);
+    let (mut left, mut right) = (GrayImage::new(640, 480), GrayImage::new(640, 480));
+    for _ in 0..6000 {
+        let [x, y] = [600.0, 476.0].map(|side| 2 + (random.unit() * side) as u32);
+        let grey = image::Luma([(120.0 + 130.0 * random.unit()) as u8]);
+        for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+            left.put_pixel(x + 20 + dx, y + dy, grey);
+            right.put_pixel(x + dx, y + dy, grey);
+        }
+    }
+    let found = check(&left, &right, 64);
+    assert!(found.under_exposed > 0.5 && found.warnings.is_empty(), "{found:?}");
 }
 
 #[test]

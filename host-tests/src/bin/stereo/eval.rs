@@ -6,7 +6,7 @@ mod table;
 
 use crate::failure::Failure;
 use crate::frame::{Matched, matched};
-use crate::look::{Disparities, Look, SearchArgs, disparities, look};
+use crate::look::{Disparities, Look, Looked, SearchArgs, disparities, look};
 use crate::place::Place;
 use crate::results::depth_unit;
 use crate::shared::{BalanceArgs, MethodArgs, min_disparity, print, remark};
@@ -233,7 +233,7 @@ fn by_matching(
     let named = |e: Failure| Failure::new(format!("{}: {e}", scene.name));
     search.check(&args.method, width, height).map_err(named)?;
     let Look { config, .. } =
-        look(&search, &args.method, [&left, &right], None, None, || None).map_err(named)?;
+        look(&search, &args.method, &Looked::of([&left, &right]), || None).map_err(named)?;
     if let Some(rival) = rival {
         rival.take([&left, &right], [config.disparities, config.min_disparity])?;
     }

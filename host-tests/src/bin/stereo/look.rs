@@ -95,21 +95,53 @@ pub fn disparities(text: &str) -> Result<Disparities, String> {
     shared::disparities(text).map(Disparities::Count).map_err(|needed| format!("{needed}, or auto"))
 }
 
+/// A pair before it is matched.
+pub struct Looked<'a> {
+    /// What is matched.
+    pub pictures: [&'a GrayImage; 2],
+    /// 0 where a picture shows nothing.
+    pub valid: Option<[&'a GrayImage; 2]>,
+    /// The camera that both pictures are of, where a calibration tells it.
+    pub camera: Option<&'a Camera<f64>>,
+    /// What is added to a disparity before it divides, px: by so much what is in front may be negative.
+    pub offset_px: f64,
+    /// Whether one raw picture was given for both, which a calibration rectified in two ways.
+    pub is_given_twice: bool,
+}
+
+impl<'a> Looked<'a> {
+    /// Pictures of which no more is known.
+    pub fn of(pictures: [&'a GrayImage; 2]) -> Self {
+        Self { pictures, valid: None, camera: None, offset_px: 0.0, is_given_twice: false }
+    }
+
+    fn fault(&self, matches: &PairMatches) -> Option<PairFault> {
+        if self.is_given_twice {
+            return Some(PairFault::Same);
+        }
+        let fault = pair::fault(self.pictures, matches);
+        fault.filter(|&fault| fault != PairFault::Swapped || !matches.are_in_front(self.offset_px))
+    }
+}
+
+/// Whether two raw pictures are one that shows something.
+pub fn are_same(left: &GrayImage, right: &GrayImage) -> bool {
+    left.as_raw() == right.as_raw() && !pair::is_blank(left)
+}
+
 /// Refuses a pair of swapped cameras, or the picture of one twice; `exchanged` is what the pictures would be
 /// if the cameras were exchanged before they are rectified.
 pub fn refuse_unpaired(
-    pictures: [&GrayImage; 2],
+    looked: &Looked<'_>,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<(), Failure> {
     // Where nothing is found nothing is said.
-    let Ok(matches) = PairMatches::find(pictures, None) else { return Ok(()) };
-    let fault = pair::fault(pictures, &matches);
-    let first = pictures[0].as_raw().first();
-    // A camera may begin in the dark.
-    if fault == Some(PairFault::Same) && pictures[0].iter().any(|grey| Some(grey) != first) {
+    let Ok(matches) = PairMatches::find(looked.pictures, None) else { return Ok(()) };
+    let fault = looked.fault(&matches);
+    if fault == Some(PairFault::Same) {
         return Err(Failure::new(format!("{}, or give --force", PairFault::Same)));
     }
-    if is_swapped(fault, pictures[0].width(), &matches, exchanged) { Err(swapped()) } else { Ok(()) }
+    if is_swapped(fault, &matches, exchanged) { Err(swapped()) } else { Ok(()) }
 }
 
 fn swapped() -> Failure {
@@ -119,20 +151,23 @@ fn swapped() -> Failure {
 /// Whether the cameras are swapped: pictures that a calibration rectified may be a pair only then.
 fn is_swapped(
     fault: Option<PairFault>,
-    width: u32,
     matches: &PairMatches,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> bool {
     let is_pair = |RectifiedPictures { pictures, valid, .. }: RectifiedPictures| {
         let pictures = pictures.each_ref();
         PairMatches::find(pictures, Some(valid.each_ref())).is_ok_and(|found| {
-            found.is_aligned(pictures[0].width()) && pair::fault(pictures, &found).is_none()
+            // A calibration that is a little off leaves rows that do not agree, and what is in front in
+            // front.
+            (found.is_aligned() || found.are_positive() && !matches.are_positive())
+                && found.in_rows.len() > matches.in_rows.len()
+                && pair::fault(pictures, &found).is_none()
         })
     };
     match fault {
         Some(PairFault::Swapped) => true,
         Some(PairFault::Same | PairFault::Still) => false,
-        _ if matches.is_aligned(width) => false,
+        _ if matches.is_sure() => false,
         _ => exchanged().is_some_and(is_pair),
     }
 }
@@ -148,18 +183,17 @@ pub struct Look {
 pub fn look(
     args: &SearchArgs,
     method: &MethodArgs,
-    pictures: [&GrayImage; 2],
-    valid: Option<[&GrayImage; 2]>,
-    camera: Option<&Camera<f64>>,
+    looked: &Looked<'_>,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<Look, Failure> {
+    let &Looked { pictures, valid, camera, .. } = looked;
     // Pictures have at most 4096 columns and rows.
     let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
     // Pictures without features are matched as well as they can be.
     let matches = PairMatches::find(pictures, valid).ok();
-    let fault = matches.as_ref().and_then(|matches| pair::fault(pictures, matches));
+    let fault = matches.as_ref().and_then(|matches| looked.fault(matches));
     if let Some(matches) = matches.as_ref().filter(|_| !args.force)
-        && is_swapped(fault, pictures[0].width(), matches, exchanged)
+        && is_swapped(fault, matches, exchanged)
     {
         return Err(swapped());
     }

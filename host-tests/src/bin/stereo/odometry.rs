@@ -5,7 +5,7 @@ mod summary;
 use crate::failure::Failure;
 use crate::image_files::gap;
 use crate::input::fits;
-use crate::look::refuse_unpaired;
+use crate::look::{Looked, are_same, refuse_unpaired};
 use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::rig::warn_of;
@@ -136,7 +136,10 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
         && !args.force
     {
-        refuse_unpaired([&left, &right], || exchanged(&sequence, cameras.rectification.as_ref()?))?;
+        let is_given_twice = cameras.rectification.is_some()
+            && matches!(frame(&sequence, None, 0)?, (left, Some(right)) if are_same(&left, &right));
+        let looked = Looked { is_given_twice, ..Looked::of([&left, &right]) };
+        refuse_unpaired(&looked, || exchanged(&sequence, cameras.rectification.as_ref()?))?;
     }
     let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
     if let Some([before, after]) = gap(&files) {

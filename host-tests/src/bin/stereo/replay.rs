@@ -1,20 +1,19 @@
 //! `stereo replay`: recorded lines through the code that runs on the device.
 
+mod answers;
+mod looking;
 mod summary;
 mod watching;
 
 use crate::failure::Failure;
-use crate::look::{self, Disparities, Look, SearchArgs};
+use crate::look::{Look, SearchArgs};
 use crate::place::{json, png};
 use crate::progress::Progress;
-use crate::scale::camera;
-use crate::shared::{
-    BalanceArgs, MethodArgs, Unit, any_u16, filter, method, noise, print, rate, remark, whole,
-};
+use crate::shared::{BalanceArgs, Unit, any_u16, filter, method, noise, print, rate, remark, whole};
 use crate::typed_rig::TypedRig;
 use crate::watch::{self, OVER_TIME, ObstacleArgs, Watch};
+use answers::Answers;
 use clap::{Args, ValueEnum};
-use image::GrayImage;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
@@ -24,7 +23,6 @@ use stereopsis::matching::{Config, Filter};
 use stereopsis_host::colour::flags_raw;
 use stereopsis_host::command_line::{one_line, words};
 use stereopsis_host::output::Staging;
-use stereopsis_host::pair::PairMatches;
 use stereopsis_host::pfm;
 use stereopsis_host::recording::{
     Ahead, FromStart, Header, Pictures, Playback, Recording, Seen, first_pairs,
@@ -113,7 +111,7 @@ pub fn run(args: &ReplayArgs) -> Result<(), Failure> {
     let watch = watching::watch(args, header)?;
     let (pairs, records) = first_pairs(recording, LOOKED_AT);
     let scale = watch.as_ref().map(|(_, scale)| scale);
-    let look = look(args, header, pairs, scale)?;
+    let look = looking::look(args, header, pairs, scale)?;
     let ahead = Ahead::new(records, header, args.balance.is_for(args.method), &seen);
     play(args, look, &mut Playback::new(ahead, header, args.timing == Timing::Recorded), &seen, watch)
 }
@@ -148,40 +146,6 @@ fn check_width(args: &ReplayArgs, header: Header) -> Result<(), Failure> {
     Err(Failure::new(format!("{from}: lines of {width} pixels; at least {least} are needed")))
 }
 
-/// The search in frames without noise, and what is seen of the pair that has the most features of those.
-fn look(
-    args: &ReplayArgs,
-    Header { width, height, .. }: Header,
-    pairs: Vec<[GrayImage; 2]>,
-    scale: Option<&DepthScale>,
-) -> Result<Look, Failure> {
-    let options = MethodArgs {
-        method: args.method,
-        filter: args.filter,
-        noise: args.noise,
-        min_confidence: 0,
-        kernel: None,
-        threads: 1,
-    };
-    args.search.check(&options, width, height)?;
-    let features =
-        |pair: &[GrayImage; 2]| PairMatches::find(pair.each_ref(), None).map_or(0, |found| found.count());
-    let black = [(); 2].map(|()| GrayImage::new(width.into(), height.into()));
-    let pair = pairs.into_iter().max_by_key(features).unwrap_or(black);
-    let camera = scale.and_then(|scale| camera(scale.rig()));
-    let came = pair.iter().any(|picture| picture.iter().any(|&grey| grey > 0));
-    if !came && args.search.disparities == Disparities::Auto {
-        return Err(Failure::new(
-            "--disparities auto: the first frames show nothing, or none of their lines came; give a number",
-        ));
-    }
-    let look = look::look(&args.search, &options, pair.each_ref(), None, camera.as_ref(), || None)?;
-    // In the sky obstacles are asked to be sure.
-    let config = Config { confidence: args.watch.obstacles, ..look.config };
-    // What never came says nothing of the cameras.
-    Ok(Look { config, check: look.check.filter(|_| came), rows: look.rows.filter(|_| came) })
-}
-
 fn play(
     args: &ReplayArgs,
     Look { config, check, rows }: Look,
@@ -192,7 +156,7 @@ fn play(
     let mut staging = Staging::new(&args.out)?;
     let (mut written, mut table, mut names) = (Ok::<(), Failure>(()), TABLE.to_owned(), Vec::new());
     let mut left = args.frames.unwrap_or(u32::MAX);
-    let mut noisy_frames = 0;
+    let (mut noisy_frames, mut answers) = (0, Answers::default());
     let next = |source: &mut Playback<_>| {
         left = left.checked_sub(1).filter(|_| source.has_frame())?;
         let noise = match args.noise {
@@ -207,6 +171,7 @@ fn play(
         progress.one_more();
         let number = names.len() + 1;
         table += &line(number, &frame);
+        answers.add(&frame);
         let [disparity, flags, obstacles @ ..] = KINDS.map(|kind| format!("{number:06}{kind}"));
         if written.is_ok() && frame.rows > 0 {
             written = staging
@@ -230,7 +195,10 @@ fn play(
     if let Some(e) = source.failed() {
         return Err(e.into());
     }
-    let pair = check.map(|check| check.with_warning(rows.as_ref().and_then(Rows::warning)));
+    let pair = check.map(|check| {
+        let few = answers.few(&check);
+        check.with_warning(rows.as_ref().and_then(Rows::warning)).with_warning(few)
+    });
     let summary = Summary {
         version: env!("CARGO_PKG_VERSION"),
         command: words(),

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::finished::{FINISHED, Mark};
 use crate::frame::{Matched, matched};
 use crate::input::Pair;
-use crate::look::{Look, look};
+use crate::look::{Look, Looked, are_same, look};
 use crate::match_args::MatchArgs;
 use crate::place::{json, png};
 use crate::rectified::{self, RectifiedCameras};
@@ -62,8 +62,9 @@ pub fn solve(
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
         let masks = args.masks.read(&args.calib, left.dimensions())?;
         let valid = masks.as_ref().map(|masks| masks.each_ref());
-        let Look { config, check, rows } =
-            look(&args.search, &args.method, [&left, &right], valid, camera.as_ref(), || None)?;
+        let offset_px = scale.as_ref().map_or(0.0, |scale| scale.rig().disparity_offset_px().into());
+        let looked = Looked { valid, camera: camera.as_ref(), offset_px, ..Looked::of([&left, &right]) };
+        let Look { config, check, rows } = look(&args.search, &args.method, &looked, || None)?;
         let off = scale.as_ref().and_then(|scale| off_middle_of(args, scale, &pair));
         pair.notes.extend(off.clone().filter(|_| check.is_none()));
         let check = check.map(|check| check.with_warning(off));
@@ -168,13 +169,16 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
-    let exchanged = || {
-        let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
-        rectify(&rectification, SceneCamera::new(right, left)).ok()
+    let [raw_left, raw_right] = [&pair.left, &pair.right].map(imageops::grayscale);
+    let looked = Looked {
+        valid: Some(valid),
+        camera: Some(camera),
+        offset_px: rig.disparity_offset_px().into(),
+        is_given_twice: are_same(&raw_left, &raw_right),
+        ..Looked::of(grey.pictures.each_ref())
     };
-    let pictures = grey.pictures.each_ref();
-    let Look { config, check, rows: aligned } =
-        look(&args.search, &args.method, pictures, Some(valid), Some(camera), exchanged)?;
+    let exchanged = || rectify(&rectification, SceneCamera::new(raw_right, raw_left)).ok();
+    let Look { config, check, rows: aligned } = look(&args.search, &args.method, &looked, exchanged)?;
     let (rows, matched) = with_rectified(&rectification, &mut pair.camera, |source| {
         (
             source.remaps().map(|remap| remap.table().rows()),

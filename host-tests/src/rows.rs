@@ -69,7 +69,13 @@ impl Rows {
         let scaled = || {
             RowFit::with_scale(&matches.in_rows, by).filter(|it| it.is_agreed() && it.is_better_than(&fit))
         };
-        let fit = if fit.is_agreed() { fit } else { of_all().or_else(scaled).unwrap_or(fit) };
+        let fit = if fit.is_of_most() {
+            fit
+        } else if fit.is_agreed() {
+            scaled().unwrap_or(fit)
+        } else {
+            of_all().or_else(scaled).unwrap_or(fit)
+        };
         Some(Self::of(&fit, by, camera.is_some(), size, fit.matches))
     }
 

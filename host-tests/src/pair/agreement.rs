@@ -110,7 +110,12 @@ impl RowFit {
     /// Whether matches agree on the turn: over half of them by two deviations of such a share, or by as many
     /// as say anything more than without it. Where most are wrong, any turn explains some.
     pub fn is_agreed(&self) -> bool {
-        self.is_most(self.agreeing) || self.is_gain(self.agreeing - self.unturned)
+        self.is_of_most() || self.is_gain(self.agreeing - self.unturned)
+    }
+
+    /// Whether over half of the matches agree on the turn.
+    pub fn is_of_most(&self) -> bool {
+        self.is_most(self.agreeing)
     }
 
     /// Whether clearly more matches have the same rows than with another turn: by as many as say anything.

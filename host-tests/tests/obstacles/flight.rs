@@ -26,5 +26,5 @@ fn what_is_not_seen_in_flight_is_not_free() {
     assert_eq!(decided(&|v| !(50.0..65.0).contains(&v)), unseen, "three rows of cells are a gap");
     let free = (Decision::Clear, 16);
     assert_eq!(decided(&|v| !(50.0..60.0).contains(&v)), free, "two are none");
-    assert_eq!(decided(&|v| v >= 10.0 && v < 110.0), free, "nor are two at an edge");
+    assert_eq!(decided(&|v| (10.0..110.0).contains(&v)), free, "nor are two at an edge");
 }

@@ -14,6 +14,9 @@ use stereopsis_host::run::MethodName;
 /// Pixels in a line at most, and disparities: of 32 and of 64 lanes, and of a number that there is no
 /// assembly for.
 const PROGRAMS: [(u16, u16); 3] = [(67, 29), (161, 53), (97, 47)];
+/// Disparities of a column that takes eight registers of a RISC-V core, and of one that is too long for them:
+/// along paths that is worked on in words, which take more stack than a frame may here.
+const LONG: [(u16, u16); 2] = [(161, 93), (261, 201)];
 /// Pixels in a line less than the most.
 const NARROWER: [u16; 4] = [0, 1, 37, 50];
 /// Lines: the window never is whole, and a few more.
@@ -29,6 +32,8 @@ pub fn check() -> Outcome {
         (M3, MethodName::Sgm, &PROGRAMS[..1]),
         (RV32, MethodName::Sgm, &PROGRAMS[..1]),
         (RV32V, MethodName::Sgm, &PROGRAMS[..]),
+        (RV32V, MethodName::Sgm, &LONG[..1]),
+        (RV32V, MethodName::Block, &LONG[..]),
     ];
     for (board, method, programs) in programs {
         for &(most, disparities) in programs {

@@ -36,6 +36,33 @@ use core::convert::Infallible;
 /// assert_eq!((line.start().row, line.bytes()), (0, &[0; 4]));
 /// consumer.done(line);
 /// ```
+///
+/// A line that is torn is given back, and its slot serves the next one. With a circular DMA over two lines:
+///
+/// ```
+/// use stereopsis::camera::{FrameStart, Half, LineSlots, LineStart, PingPong};
+/// let mut bytes = [[0; 4]; 2]; // two statics in firmware
+/// let mut slots = LineSlots::<4, 3>::new();
+/// let (mut producer, mut consumer) = slots.split(&mut bytes);
+/// let (mut ping_pong, frame, mut due) = (PingPong::new(), FrameStart::default(), Half::First);
+/// for row in 0..6 {
+///     // In the interrupt of a half. The DMA overtakes the first three copies.
+///     let (done, dma) = (due, [row as u8; 4]);
+///     due = due.other();
+///     let Some(mut line) = producer.begin() else { continue };
+///     let writing = || if row < 3 { done } else { done.other() };
+///     match ping_pong.take(done, &dma, line.bytes(), writing) {
+///         Ok(_) => producer.finish(line, frame, LineStart { row, timestamp_us: 0 }),
+///         Err(_) => producer.give_back(line),
+///     }
+///     // In the program.
+///     if let Some(line) = consumer.next() {
+///         assert_eq!((line.start().row, line.bytes()), (row, &[row as u8; 4]));
+///         consumer.done(line);
+///     }
+/// }
+/// assert_eq!((ping_pong.torn(), producer.overruns()), (3, 0));
+/// ```
 #[derive(Debug)]
 pub struct LineSlots<'b, const B: usize, const N: usize> {
     free: Queue<&'b mut [u8; B], N>,
@@ -62,7 +89,10 @@ impl<'b, const B: usize, const N: usize> LineSlots<'b, B, N> {
             // What is too many stays out.
             let _ = give.send(slot);
         }
-        (LineProducer { free, waiting: fill, overruns: 0 }, LineConsumer { waiting, free: give })
+        (
+            LineProducer { free, returned: None, waiting: fill, overruns: 0 },
+            LineConsumer { waiting, free: give },
+        )
     }
 }
 
@@ -119,6 +149,8 @@ impl<const B: usize> FilledLine<'_, B> {
 /// The interrupt's end of the queue.
 pub struct LineProducer<'a, 'b, const B: usize> {
     free: Receiver<'a, &'b mut [u8; B]>,
+    /// A slot that was given back unfinished: the next line's.
+    returned: Option<&'b mut [u8; B]>,
     waiting: Sender<'a, FilledLine<'b, B>>,
     overruns: u32,
 }
@@ -126,7 +158,7 @@ pub struct LineProducer<'a, 'b, const B: usize> {
 impl<'b, const B: usize> LineProducer<'_, 'b, B> {
     /// Takes a slot for the line that comes now; with none the line is lost, which is counted.
     pub fn begin(&mut self) -> Option<EmptyLine<'b, B>> {
-        let slot = self.free.receive().map(EmptyLine);
+        let slot = self.returned.take().or_else(|| self.free.receive()).map(EmptyLine);
         if slot.is_none() {
             self.overruns = self.overruns.saturating_add(1);
         }
@@ -139,6 +171,12 @@ impl<'b, const B: usize> LineProducer<'_, 'b, B> {
         // There are no more slots than the queue has room for.
         let line = FilledLine { bytes: line.0, frame, start, overruns: self.overruns };
         let _ = self.waiting.send(line);
+    }
+
+    /// Takes a slot back whose line is not finished, for the line that is begun next. It keeps one slot: one
+    /// that was given back before and not begun since is lost.
+    pub fn give_back(&mut self, line: EmptyLine<'b, B>) {
+        self.returned = Some(line.0);
     }
 
     /// Number of lines that found no slot.

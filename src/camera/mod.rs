@@ -21,7 +21,7 @@
 //! | hardware | implementation |
 //! | --- | --- |
 //! | parallel port, DMA per line | [`LineProducer::begin`] and `finish` in the interrupt; [`HandedLines`] |
-//! | circular DMA over two lines | [`PingPong::take`] in both interrupts, into a slot |
+//! | circular DMA over two lines | [`PingPong::take`] into a slot; torn: [`LineProducer::give_back`] |
 //! | PIO of an RP2040 or RP2350 | DMA as above; two sensors on one program are [`SideBySide`] |
 //! | SPI sensor | `next_line` reads a line; nothing waits |
 //! | FPGA that writes lines into memory | `next_line` copies; the FPGA's counter is [`LineStart::row`] |
@@ -46,8 +46,8 @@
 //! # Writing the application
 //!
 //! Connect a source to a [`pipeline`](crate::pipeline). Two sensors on one trigger pin are
-//! `Triggered<CameraPair<...>>`; free-running sensors are paired by time stamps ([`Pairing::TimeStamp`]) and
-//! their row skew is measured ([`CameraPair::row_skew`]).
+//! `Triggered<CameraPair<...>>` where they take a pulse; free-running sensors are paired by time stamps
+//! ([`Pairing::TimeStamp`]) and their row skew is measured ([`CameraPair::row_skew`]).
 
 mod format;
 mod handoff;
@@ -55,6 +55,7 @@ mod pair;
 mod ping_pong;
 mod polled;
 mod queue;
+mod row_skew;
 mod sensors;
 mod signal;
 mod source;
@@ -64,11 +65,12 @@ mod trigger;
 
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
-pub use pair::{CameraPair, PairError, Pairing, RowSkew};
+pub use pair::{CameraPair, PairError, Pairing};
 pub use ping_pong::{Half, PingPong};
 pub use polled::PolledLines;
 #[cfg(feature = "ffi")]
 pub(crate) use queue::Positions;
+pub use row_skew::RowSkew;
 #[cfg(feature = "async")]
 pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{

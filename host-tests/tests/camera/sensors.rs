@@ -43,8 +43,8 @@ pub fn mt9v034_start() -> Vec<Transaction> {
         w(0x05, 61),
         // As many blank rows as after a reset, which a frame time set before may have changed.
         w(0x06, 45),
-        // Free-running: as the register is after a reset.
-        w(0x07, 0x0388),
+        // Free-running, without the bit 9 that is set after a reset.
+        w(0x07, 0x0188),
     ]
 }
 
@@ -56,8 +56,7 @@ pub fn reset_pin() -> PinMock {
 pub fn mt9v034_session() -> Vec<Transaction> {
     let mut expected = mt9v034_start();
     expected.extend([
-        w(0x07, 0x0398),
-        w(0x07, 0x0380),
+        w(0x07, 0x0198),
         // 320 of 640 columns in the middle, binned by two: 704 - 640 < 71.
         w(0x0d, 0x0305),
         w(0x01, 57),
@@ -84,7 +83,6 @@ fn a_mt9v034_is_set_up_register_by_register() {
     let mut sensor = Mt9v034::new(bus.clone(), AT, CLOCK_HZ);
     sensor.initialise(&mut pin, &mut NoopDelay::new()).expect("the bus takes it");
     sensor.set_mode(Mt9v034Mode::Snapshot).expect("the bus takes it");
-    sensor.set_mode(Mt9v034Mode::Slave).expect("the bus takes it");
     let window = Mt9v034Window { left: 56, top: 0, width: 640, height: 480, binning: Mt9v034Binning::Two };
     sensor.set_window(window).expect("the bus takes it");
     sensor.set_flips(true, true).expect("the bus takes it");

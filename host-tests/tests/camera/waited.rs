@@ -27,7 +27,6 @@ fn a_mt9v034_is_set_up_register_by_register() {
     let session = async {
         sensor.initialise(&mut reset, &mut NoopDelay::new()).await?;
         sensor.set_mode(Mt9v034Mode::Snapshot).await?;
-        sensor.set_mode(Mt9v034Mode::Slave).await?;
         sensor.set_window(window).await?;
         sensor.set_flips(true, true).await?;
         sensor.set_exposure_rows(32_765).await?;

@@ -33,8 +33,9 @@ const PIXEL_CLOCK: u8 = 0x72;
 const TEST_PATTERN: u8 = 0x7f;
 const AEC_AGC_ENABLE: u8 = 0xaf;
 
-/// Output pins on, exposure while the frame before is read out, and a bit that has to be one.
-const CONTROL: u16 = 1 << 7 | 1 << 8 | 1 << 9;
+/// Output pins on, and exposure while the frame before is read out. Bit 9 is clear: it is one after a reset,
+/// and zero in normal operation.
+const CONTROL: u16 = 1 << 7 | 1 << 8;
 /// Bits of the read mode that have to be one.
 const READ: u16 = 0x0300;
 /// Values of reserved registers that the data sheet recommends.
@@ -108,7 +109,6 @@ macro_rules! driver {
         /// Sets who triggers the exposure.
         pub $($async)? fn set_mode(&mut self, mode: Mt9v034Mode) -> Outcome<I> {
             let bits = match mode {
-                Mt9v034Mode::Slave => 0,
                 Mt9v034Mode::Master => 1 << 3,
                 Mt9v034Mode::Snapshot => 3 << 3,
             };

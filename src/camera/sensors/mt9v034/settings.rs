@@ -11,8 +11,6 @@ pub enum Mt9v034Mode {
     /// Snapshot on a pulse of the pin EXPOSURE, for as long as the register says. Both sensors of a pair on
     /// one pin expose together ([`Triggered`](crate::camera::Triggered)).
     Snapshot,
-    /// Exposure from a pulse on EXPOSURE to one on STFRM_OUT.
-    Slave,
 }
 
 /// Window of the pixel array that is read out, in its pixels, and its binning.

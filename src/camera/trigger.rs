@@ -9,7 +9,9 @@ use embedded_hal::digital::OutputPin;
 ///
 /// [`start_frame`](StereoSource::start_frame) holds the pin high for the pulse's length, then waits for the
 /// frame. The source has to wait for its frame: each repeat after a [`CameraError::WouldBlock`] is a pulse of
-/// its own.
+/// its own. A sensor that sends frames for as long as its pin is high, as an HM01B0 does
+/// ([`Hm01b0Mode::Triggered`](super::Hm01b0Mode::Triggered)), needs its pin held until the last line, which
+/// this does not do.
 ///
 /// ```text
 ///             ┌──────────┐

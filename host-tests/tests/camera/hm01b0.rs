@@ -66,6 +66,9 @@ pub fn hm01b0_start() -> Vec<Transaction> {
         (0x100c, 0x40),
         (0x1012, 0x00),
         (0x3059, 0x02),
+        // Eight bits a pixel; an eighth of the master clock.
+        (0x3011, 0x70),
+        (0x3060, 0x08),
         (0x2100, 0x00),
         (0x0342, 0x01),
         (0x0343, 0x78),

@@ -1,8 +1,11 @@
 //! Himax's HM01B0: 324x324 pixels of 8 bits behind a rolling shutter, a few milliwatts.
 //!
-//! Registers have 8 bits at 16-bit addresses, the high byte first. Their names, numbers and values are those
-//! of OpenMV's driver (`drivers/sensors/hm01b0.c` and `.h`, MIT); some are reserved in the data sheet, but
-//! the picture is bad without them.
+//! Registers have 8 bits at 16-bit addresses, the high byte first. Their names and numbers are those of
+//! OpenMV's driver (`drivers/sensors/hm01b0.c` and `.h`, MIT), and so are most values; some are reserved in
+//! the data sheet, but the picture is bad without them. Three are different. Both targets of the black level
+//! are 8, as in Himax's own table, where OpenMV ends with 0 for the first one. The clock divisor is written
+//! once, for 8, and not by the frame rate. The edge of PCLK at which data are valid (0x3068) stays as it is
+//! after a reset.
 //!
 //! A line takes 376 clocks. The exposure is whole lines, at most two fewer than the frame has. What is
 //! written after [`Hm01b0::initialise`] takes effect with the frame after the group command.
@@ -30,14 +33,17 @@ const QVGA_WINDOW: u16 = 0x3010;
 const ATTEMPTS: u8 = 10;
 const CLOCKS_A_LINE: u16 = 0x0178;
 
-/// Analog settings, black level, and defect correction for a sensor without colours.
+/// Analog settings, black level, defect correction for a sensor without colours, eight bits a pixel, and the
+/// clocks: lines are counted in an eighth of the master clock, registers run at all of it, and PCLK goes on
+/// between two lines.
 #[rustfmt::skip]
-const SETTINGS: [(u16, u8); 29] = [
+const SETTINGS: [(u16, u8); 31] = [
     (0x1003, 0x08), (0x1007, 0x08), (0x3044, 0x0a), (0x3045, 0x00), (0x3047, 0x0a), (0x3050, 0xc0),
     (0x3051, 0x42), (0x3052, 0x50), (0x3053, 0x00), (0x3054, 0x03), (0x3055, 0xf7), (0x3056, 0xf8),
     (0x3057, 0x29), (0x3058, 0x1f), (0x3064, 0x00), (0x3065, 0x04), (0x3067, 0x00), (0x1000, 0x43),
     (0x1001, 0x43), (0x1002, 0x43), (0x0350, 0x7f), (0x1006, 0x01), (0x1008, 0x01), (0x1009, 0xa0),
     (0x100a, 0x60), (0x100b, 0x90), (0x100c, 0x40), (0x1012, 0x00), (0x3059, 0x02),
+    (0x3011, 0x70), (0x3060, 0x08),
 ];
 
 /// Region of the pixel array that is read out.
@@ -85,7 +91,8 @@ pub enum Hm01b0Mode {
     Standby,
     /// One frame after the other.
     Streaming,
-    /// A frame for each pulse on its pin TRIG.
+    /// Frames while its pin TRIG is high. For one frame hold it until the frame's last line has come, and take
+    /// it back before the next one begins. Sensors on one pin begin together.
     Triggered,
 }
 
@@ -110,8 +117,8 @@ macro_rules! driver {
         /// Model number that the chip reports.
         pub const IDENTITY: u16 = 0x01b0;
 
-        /// Creates a driver without touching the bus. `clock_hz` is the clock in which lines are counted: the
-        /// master clock divided by the register OSC_CLK_DIV, 8 after a reset.
+        /// Creates a driver without touching the bus. `clock_hz` is the clock in which lines are counted: an
+        /// eighth of the master clock, as [`Self::initialise`] sets the register OSC_CLK_DIV.
         pub const fn new(bus: I, clock_hz: u32) -> Self {
             let size = Hm01b0Size::Qvga;
             Self { bus, clock_hz, frame_lines: size.least_lines(), exposure_lines: 0, size }

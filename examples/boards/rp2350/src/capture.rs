@@ -9,7 +9,7 @@ use embassy_rp::peripherals::PIO0;
 use embassy_rp::pio::program::pio_file;
 use embassy_rp::pio::{Common, Config, LoadedProgram, Pin, ShiftConfig, ShiftDirection, StateMachine};
 use embassy_rp::pwm::Pwm;
-use embassy_time::{Duration, Instant, Ticker, Timer, with_timeout};
+use embassy_time::{Duration, Instant, Ticker, with_timeout};
 use stereopsis::camera::{FrameStart, LineStart};
 
 /// From frame to frame: the 82 lines of a band have to be done in this time.
@@ -97,9 +97,8 @@ pub async fn run(capture: Capture) -> ! {
         sequence = sequence.wrapping_add(1);
         let timestamp_us = Instant::now().as_micros();
         let frame = FrameStart { sequence, timestamp_us, exposure_us: crate::sensors::EXPOSURE_US };
+        // The sensors send frames while it is high: this one, until its last line is in.
         trigger.set_high();
-        Timer::after_micros(10).await;
-        trigger.set_low();
         for row in 0..HEIGHT {
             // What has begun is taken back when the time is over: both channels are stopped.
             if with_timeout(NO_LINE, join(left.read(), right.read())).await.is_err() {
@@ -115,5 +114,6 @@ pub async fn run(capture: Capture) -> ! {
                 });
             }
         }
+        trigger.set_low();
     }
 }

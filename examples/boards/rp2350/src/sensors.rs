@@ -1,6 +1,6 @@
 //! Both HM01B0 set up alike: 162x122 pixels on four data pins, a frame for each trigger.
 
-use embassy_time::Delay;
+use embassy_time::{Delay, Duration, block_for};
 use embedded_hal::i2c::I2c;
 use stereopsis::camera::{Hm01b0, Hm01b0Mode, Hm01b0Size, SensorError};
 
@@ -13,8 +13,25 @@ const GAIN_16THS: u16 = 32;
 /// The register BIT_CONTROL with four data pins, the low half of a byte first.
 const FOUR_PINS: [u8; 3] = [0x30, 0x59, 0x42];
 
+/// From the master clock's beginning, and from a start that failed, to the next one.
+const WAIT: Duration = Duration::from_millis(50);
+/// Number of starts.
+const ATTEMPTS: u32 = 10;
+
+/// Sets a sensor up whose master clock has just begun.
+pub fn start<I: I2c>(mut bus: I) -> Result<(), SensorError<I::Error>> {
+    for _ in 1..ATTEMPTS {
+        block_for(WAIT);
+        if set_up(&mut bus).is_ok() {
+            return Ok(());
+        }
+    }
+    block_for(WAIT);
+    set_up(&mut bus)
+}
+
 /// Sets a sensor up and has it wait for triggers.
-pub fn start<I: I2c>(bus: I) -> Result<(), SensorError<I::Error>> {
+fn set_up<I: I2c>(bus: I) -> Result<(), SensorError<I::Error>> {
     let mut sensor = Hm01b0::new(bus, CLOCK_HZ);
     sensor.initialise(&mut Delay)?;
     let mut bus = sensor.release();

@@ -105,16 +105,6 @@ impl Port {
         to: Destination,
     ) -> Self {
         pins.connect();
-        embassy_stm32::rcc::enable_and_reset::<DCMI>();
-        pac::DCMI.cr().write(|cr| {
-            cr.set_cm(false); // One frame after the other,
-            cr.set_fcrc(0); // every one of them,
-            cr.set_edm(0); // 8 bits of a pixel,
-            cr.set_ess(false); // with pins for the synchronisation:
-            cr.set_pckpol(true); // taken at rising edges,
-            cr.set_vspol(true); // not while VSYNC is high,
-            cr.set_hspol(false); // nor while HSYNC is low.
-        });
         let request = FrameDma::<DCMI>::request(&*dma);
         Self { channel: Channel::new(dma, interrupts), request, to }
     }
@@ -136,15 +126,14 @@ pub async fn run(port: Port) -> ! {
     let mut sequence = 0u32;
     loop {
         // The ring begins with the first word of a frame, for which the port waits.
-        capture(false);
-        clear(true);
+        set_up();
         let options = TransferOptions::default();
         // SAFETY: the port's data register is read by this channel alone, and the lines are in memory that
         // the DMA reaches; they live as long as the program.
         let mut ring =
             unsafe { ReadableRingBuffer::new(channel.reborrow(), request, data, &mut *two_lines, options) };
         ring.start();
-        capture(true);
+        begin();
         let mut is_first = true;
         while frame(&mut ring, sequence, is_first, &mut to).await {
             (sequence, is_first) = (sequence.wrapping_add(1), false);
@@ -153,20 +142,26 @@ pub async fn run(port: Port) -> ! {
     }
 }
 
-/// Starts or stops the port.
-fn capture(is_on: bool) {
-    pac::DCMI.cr().modify(|cr| {
-        cr.set_enable(is_on);
-        cr.set_capture(is_on);
+/// Sets the port up. A reset stops it within a frame too, and leaves neither flags nor words of a line that was
+/// broken off.
+fn set_up() {
+    embassy_stm32::rcc::enable_and_reset::<DCMI>();
+    pac::DCMI.cr().write(|cr| {
+        cr.set_cm(false); // One frame after the other,
+        cr.set_fcrc(0); // every one of them,
+        cr.set_edm(0); // 8 bits of a pixel,
+        cr.set_ess(false); // with pins for the synchronisation:
+        cr.set_pckpol(true); // taken at rising edges,
+        cr.set_vspol(true); // not while VSYNC is high,
+        cr.set_hspol(false); // nor while HSYNC is low.
     });
 }
 
-/// Clears the flag of a frame's end, or those of faults too.
-fn clear(faults_too: bool) {
-    pac::DCMI.icr().write(|flags| {
-        flags.set_frame_isc(true);
-        flags.set_ovr_isc(faults_too);
-        flags.set_err_isc(faults_too);
+/// Has the port wait for a frame.
+fn begin() {
+    pac::DCMI.cr().modify(|cr| {
+        cr.set_enable(true);
+        cr.set_capture(true);
     });
 }
 
@@ -192,7 +187,7 @@ async fn frame(
             if flags.frame_ris() == is_first {
                 return false;
             }
-            clear(false);
+            pac::DCMI.icr().write(|flags| flags.set_frame_isc(true));
             start.timestamp_us = timestamp_us;
         } else if flags.frame_ris() && row + 2 < HEIGHT {
             return false;

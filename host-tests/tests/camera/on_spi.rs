@@ -7,7 +7,9 @@ use embedded_hal_async::spi::{Operation, SpiDevice};
 use spi_cameras::frames::{self, Cameras, FrameError, Rows};
 use spi_cameras::mega::{CAMERA, LENGTH, Mega, MegaError, SIZE, STATE, grey_level};
 use spi_cameras::simulated::{Misuse, Simulated};
+use std::cell::RefCell;
 use std::pin::pin;
+use std::rc::Rc;
 use std::task::{Context, Poll, Waker};
 
 /// The end of a task; how often it was asked.
@@ -148,6 +150,85 @@ fn a_camera_that_fails_is_named() {
     assert_eq!(result, Err(FrameError::Right(MegaError::Picture)));
     assert!((1000..1010).contains(&passed_ms), "{passed_ms}");
     assert_eq!(frame(LENGTH[1], |_| 0x7f).0, Err(FrameError::Right(MegaError::Short(0x7f00))));
+}
+
+#[test]
+fn what_is_shown_of_a_fault_says_where_and_what() {
+    let words = |error: FrameError<Misuse, Misuse>| error.words();
+    assert_eq!(words(FrameError::Left(MegaError::Unknown(0x42))), ("left", "unknown", 66));
+    assert_eq!(words(FrameError::Right(MegaError::Settings)), ("right", "settings", 3000));
+    assert_eq!(words(FrameError::Right(MegaError::Bus(Misuse::Command))), ("right", "bus", 0));
+    assert_eq!(words(FrameError::Left(MegaError::Short(0x7f00))), ("left", "short", 0x7f00));
+}
+
+#[test]
+fn every_module_takes_its_own_code_for_the_size() {
+    // The simulated camera takes no picture at the other family's code.
+    for camera in 0x81..=0x87 {
+        let mut mega = Mega::new(Simulated::of(camera, seen(0)));
+        asked(mega.set_up(&mut Passing(0))).0.unwrap_or_else(|e| panic!("{camera:#x}: {e:?}"));
+        asked(mega.take()).0.unwrap_or_else(|e| panic!("{camera:#x}: {e:?}"));
+        asked(mega.taken(&mut Passing(0))).0.unwrap_or_else(|e| panic!("{camera:#x}: {e:?}"));
+    }
+    for camera in [0x80, 0x88] {
+        let mut mega = Mega::new(Simulated::of(camera, seen(0)));
+        assert_eq!(asked(mega.set_up(&mut Passing(0))).0, Err(MegaError::Unknown(camera)));
+    }
+}
+
+/// What happened, in order.
+type Log = Rc<RefCell<Vec<String>>>;
+
+/// A camera whose lines take a while: the task is asked once more after each transfer's beginning.
+struct Slow<F> {
+    camera: Simulated<F>,
+    name: &'static str,
+    log: Log,
+}
+
+impl<F> ErrorType for Slow<F> {
+    type Error = Misuse;
+}
+
+impl<F: FnMut(u16, &mut [u8; SIZE])> SpiDevice for Slow<F> {
+    async fn transaction(&mut self, operations: &mut [Operation<'_, u8>]) -> Result<(), Misuse> {
+        for operation in operations {
+            let is_line = matches!(operation, Operation::TransferInPlace(bytes) if bytes.len() > 3);
+            if is_line {
+                self.log.borrow_mut().push(format!("{} begins", self.name));
+            }
+            let mut is_asked = false;
+            std::future::poll_fn(|_| {
+                let was_asked = std::mem::replace(&mut is_asked, true);
+                if was_asked { Poll::Ready(()) } else { Poll::Pending }
+            })
+            .await;
+            self.camera.transaction(std::slice::from_mut(operation)).await?;
+            if is_line {
+                self.log.borrow_mut().push(format!("{} ends", self.name));
+            }
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn rows_are_matched_while_the_next_lines_are_on_their_way() {
+    let log = Log::default();
+    let slow = |name, shift| Mega::new(Slow { camera: Simulated::new(seen(shift)), name, log: log.clone() });
+    let mut cameras =
+        Cameras { left: slow("left", 0), right: slow("right", 7), delays: [Passing(0), Passing(0)] };
+    let mut rows = started();
+    asked(cameras.set_up()).0.expect("both answer");
+    let show = |row: &stereopsis::matching::Row<'_>| log.borrow_mut().push(format!("row {}", row.index()));
+    asked(cameras.frame(&mut rows, show)).0.expect("a frame");
+    let log = log.borrow();
+    let at = log.iter().position(|what| what == "row 40").expect("it is matched");
+    let around = &log[at - 4..=at + 2];
+    assert_eq!(
+        around,
+        ["left ends", "right ends", "left begins", "right begins", "row 40", "left ends", "right ends"]
+    );
 }
 
 #[test]

@@ -21,7 +21,7 @@ use esp_hal::timer::timg::TimerGroup;
 use esp_hal::uart::{Config as UartConfig, Uart};
 use esp_hal::{Async, Blocking};
 use spi_cameras::frames::{self, Cameras, Rows};
-use spi_cameras::mega::{LINE_BYTES, Mega};
+use spi_cameras::mega::{BURST_BYTES, Mega};
 use static_cell::{ConstStaticCell, StaticCell};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
@@ -49,10 +49,10 @@ fn main() -> ! {
     let config = SpiConfig::default().with_frequency(Rate::from_mhz(8)).with_mode(Mode::_0);
     let spi = Spi::new(p.SPI2, config).expect("a frequency that it has");
     let spi = spi.with_sck(p.GPIO6).with_mosi(p.GPIO7).with_miso(p.GPIO2).with_dma(p.DMA_CH0);
-    // A line, and the longest command.
-    let (received, receive, sent, send) = esp_hal::dma_buffers!(LINE_BYTES, 4);
+    // The longest transfer goes through both at once.
+    let (received, receive, sent, send) = esp_hal::dma_buffers!(BURST_BYTES);
     let received = DmaRxBuf::new(receive, received).expect("a descriptor for a line");
-    let sent = DmaTxBuf::new(send, sent).expect("a descriptor for a command");
+    let sent = DmaTxBuf::new(send, sent).expect("a descriptor for a line");
     let bus = BUS.init(Mutex::new(spi.with_buffers(received, sent).into_async()));
     let select = |pin: Output<'static>| Mega::new(SpiDevice::new(&*bus, pin));
     let timers = TimerGroup::new(p.TIMG0);
@@ -80,7 +80,9 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: Uart<'stati
     let (mut sequence, mut is_set_up) = (0u32, false);
     loop {
         // After a fault both begin anew.
-        if !is_set_up && cameras.set_up().await.is_err() {
+        if !is_set_up && let Err(error) = cameras.set_up().await {
+            say(&mut uart, error.words());
+            cameras.rest().await;
             continue;
         }
         let mut nearest_mm = u16::MAX;
@@ -88,14 +90,25 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: Uart<'stati
             let depths = row.disparities().iter().map(|&d| scale.millimetres(d).0);
             nearest_mm = depths.filter(|&mm| mm > 0).fold(nearest_mm, u16::min); // 0 is no answer.
         });
-        is_set_up = taken.await.is_ok();
-        if is_set_up {
+        let taken = taken.await;
+        is_set_up = taken.is_ok();
+        if let Err(error) = taken {
+            say(&mut uart, error.words());
+        } else {
             sequence = sequence.wrapping_add(1);
             for (number, end) in [(sequence, b' '), (nearest_mm.into(), b'\n')] {
                 write(&mut uart, number, end);
             }
         }
     }
+}
+
+/// Says what is wrong.
+fn say(uart: &mut Uart<'static, Blocking>, (at, what, number): (&str, &str, u32)) {
+    for byte in [at, " ", what, " "].into_iter().flat_map(str::bytes) {
+        let _ = uart.write(&[byte]);
+    }
+    write(uart, number, b'\n');
 }
 
 /// Writes a number and what follows it.

@@ -85,7 +85,9 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: UarteTx<'st
     let (mut sequence, mut is_set_up) = (0u32, false);
     loop {
         // After a fault both begin anew.
-        if !is_set_up && cameras.set_up().await.is_err() {
+        if !is_set_up && let Err(error) = cameras.set_up().await {
+            say(&mut uart, error.words()).await;
+            cameras.rest().await;
             continue;
         }
         let mut nearest_mm = u16::MAX;
@@ -93,14 +95,25 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: UarteTx<'st
             let depths = row.disparities().iter().map(|&d| scale.millimetres(d).0);
             nearest_mm = depths.filter(|&mm| mm > 0).fold(nearest_mm, u16::min); // 0 is no answer.
         });
-        is_set_up = taken.await.is_ok();
-        if is_set_up {
+        let taken = taken.await;
+        is_set_up = taken.is_ok();
+        if let Err(error) = taken {
+            say(&mut uart, error.words()).await;
+        } else {
             sequence = sequence.wrapping_add(1);
             for (number, end) in [(sequence, b' '), (nearest_mm.into(), b'\n')] {
                 write(&mut uart, number, end).await;
             }
         }
     }
+}
+
+/// Says what is wrong.
+async fn say(uart: &mut UarteTx<'static>, (at, what, number): (&str, &str, u32)) {
+    for word in [at, " ", what, " "] {
+        let _ = uart.write(word.as_bytes()).await;
+    }
+    write(uart, number, b'\n').await;
 }
 
 /// Writes a number and what follows it.

@@ -1,7 +1,7 @@
 //! A frame of both cameras through the pipeline: while a pair of lines is matched, the next one is on its
 //! way.
 
-use crate::mega::{Mega, MegaError, SIZE};
+use crate::mega::{Mega, MegaError, PICTURE_MS, SETTING_MS, SIZE};
 use embassy_futures::join::{join, join3};
 use embedded_hal_async::delay::DelayNs;
 use embedded_hal_async::spi::SpiDevice;
@@ -33,6 +33,27 @@ pub enum FrameError<L, R> {
     Match(PushError),
 }
 
+impl<L, R> FrameError<L, R> {
+    /// What to show: where it was, what it was, and a number that says more: `left unknown 66`.
+    pub fn words(&self) -> (&'static str, &'static str, u32) {
+        fn of<E>(error: &MegaError<E>) -> (&'static str, u32) {
+            match error {
+                MegaError::Bus(_) => ("bus", 0),
+                MegaError::Unknown(camera) => ("unknown", u32::from(*camera)),
+                MegaError::Settings => ("settings", SETTING_MS),
+                MegaError::Picture => ("picture", PICTURE_MS),
+                MegaError::Short(length) => ("short", *length),
+            }
+        }
+        let (at, (what, number)) = match self {
+            Self::Left(error) => ("left", of(error)),
+            Self::Right(error) => ("right", of(error)),
+            Self::Begin(_) | Self::Match(_) => ("pipeline", ("start", 0)),
+        };
+        (at, what, number)
+    }
+}
+
 /// Both cameras, and what makes them wait.
 #[derive(Debug)]
 pub struct Cameras<L, R, D> {
@@ -54,6 +75,12 @@ impl<L: SpiDevice, R: SpiDevice, D: DelayNs> Cameras<L, R, D> {
         both(join(self.left.set_up(first), self.right.set_up(second)).await)
     }
 
+    /// Waits for a second, after a fault that stays.
+    pub async fn rest(&mut self) {
+        let [delay, _] = &mut self.delays;
+        delay.delay_ms(1000).await;
+    }
+
     /// Takes a frame and gives its rows to `show` as they come out.
     ///
     /// # Errors
@@ -67,7 +94,8 @@ impl<L: SpiDevice, R: SpiDevice, D: DelayNs> Cameras<L, R, D> {
         both(join(left.take(), right.take()).await)?;
         both(join(left.taken(first), right.taken(second)).await)?;
         rows.begin().map_err(FrameError::Begin)?;
-        // A pair of lines is on its way while the other one is matched.
+        // A pair of lines is on its way while the other one is matched: the transfers begin when they are polled
+        // first, before the matcher is.
         let mut lines = [[[0; SIZE]; 2]; 2];
         let [coming, there] = &mut lines;
         let (mut coming, mut there) = (coming, there);

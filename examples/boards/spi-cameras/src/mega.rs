@@ -1,4 +1,4 @@
-//! Driver of an Arducam Mega 3MP or 5MP, for pictures of 128 x 128 pixels, after Arducam's "Mega SPI Camera
+//! Driver of an Arducam Mega, for pictures of 128 x 128 pixels, after Arducam's "Mega SPI Camera
 //! Series Application Note" of September 2023; the registers that are read, after Arducam's SDK.
 //!
 //! The camera takes a picture when it is told to, keeps it in memory of its own, and gives it out at the
@@ -6,12 +6,14 @@
 //! value, and read as its address, a byte of waiting and the value.
 
 use embedded_hal_async::delay::DelayNs;
-use embedded_hal_async::spi::{Operation, SpiDevice};
+use embedded_hal_async::spi::SpiDevice;
 
 /// Pixels in a line, and lines.
 pub const SIZE: usize = 128;
 /// Bytes of a line: a pixel is five bits of red, six of green and five of blue, the high byte first.
 pub const LINE_BYTES: usize = 2 * SIZE;
+/// Bytes of the longest transfer: a line, its command and a byte of waiting.
+pub const BURST_BYTES: usize = 2 + LINE_BYTES;
 /// Bytes of a picture.
 pub const PICTURE_BYTES: u32 = (LINE_BYTES * SIZE) as u32;
 
@@ -23,21 +25,31 @@ pub const MEMORY: u8 = 0x04;
 pub const RESET: u8 = 0x07;
 /// What a pixel is: 2 is RGB565.
 pub const FORMAT: u8 = 0x20;
-/// The size of a picture: 11 is 128 x 128 pixels.
+/// The size of a picture: [`size_code`] has the value. It is written after the format.
 pub const RESOLUTION: u8 = 0x21;
 /// The burst that reads the picture. Its first one has a byte of waiting.
 pub const BURST: u8 = 0x3C;
-/// Which camera it is: 0x81 and 0x83 have five million pixels, 0x82 and 0x84 three.
+/// Which camera it is: 0x81, 0x83 and 0x85 have five million pixels, 0x82, 0x84 and 0x86 three, 0x87 two.
 pub const CAMERA: u8 = 0x40;
 /// State: bit 1 alone of the lowest two says that settings are done, bit 2 that a picture is.
 pub const STATE: u8 = 0x44;
 /// The bytes of the picture, in three registers, the lowest first.
 pub const LENGTH: [u8; 3] = [0x45, 0x46, 0x47];
 
+/// The value of [`RESOLUTION`] for 128 x 128 pixels, by what [`CAMERA`] reads: from 0x85 on the codes are
+/// others.
+pub const fn size_code(camera: u8) -> Option<u8> {
+    match camera {
+        0x81..=0x84 => Some(11),
+        0x85..=0x87 => Some(1),
+        _ => None,
+    }
+}
+
 /// Milliseconds that settings may take.
-const SETTING_MS: u32 = 3000;
+pub const SETTING_MS: u32 = 3000;
 /// Milliseconds that a picture may take.
-const PICTURE_MS: u32 = 1000;
+pub const PICTURE_MS: u32 = 1000;
 
 /// Why there is no picture.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -60,13 +72,14 @@ pub enum MegaError<E> {
 pub struct Mega<S> {
     bus: S,
     is_first_burst: bool,
-    line: [u8; LINE_BYTES],
+    /// The command of a burst and its byte of waiting, then a line.
+    burst: [u8; BURST_BYTES],
 }
 
 impl<S: SpiDevice> Mega<S> {
     /// A camera that is not set up yet.
     pub const fn new(bus: S) -> Self {
-        Self { bus, is_first_burst: true, line: [0; LINE_BYTES] }
+        Self { bus, is_first_burst: true, burst: [0; BURST_BYTES] }
     }
 
     /// Resets the camera and sets the picture's size and format.
@@ -77,10 +90,8 @@ impl<S: SpiDevice> Mega<S> {
         self.write(RESET, 1 << 6).await?;
         self.settled(delay).await?;
         let camera = self.read(CAMERA).await?;
-        if !(0x81..=0x84).contains(&camera) {
-            return Err(MegaError::Unknown(camera));
-        }
-        for (register, value) in [(FORMAT, 2), (RESOLUTION, 11)] {
+        let size = size_code(camera).ok_or(MegaError::Unknown(camera))?;
+        for (register, value) in [(FORMAT, 2), (RESOLUTION, size)] {
             self.write(register, value).await?;
             self.settled(delay).await?;
         }
@@ -117,16 +128,22 @@ impl<S: SpiDevice> Mega<S> {
         Err(MegaError::Picture)
     }
 
-    /// Reads the picture's next line as grey levels.
+    /// Reads the picture's next line as grey levels, in one transfer that begins with the first poll.
     ///
     /// # Errors
     /// When the bus fails.
     pub async fn line(&mut self, grey: &mut [u8]) -> Result<(), MegaError<S::Error>> {
-        let command: &[u8] = if self.is_first_burst { &[BURST, 0] } else { &[BURST] };
-        let mut burst = [Operation::Write(command), Operation::Read(&mut self.line)];
-        self.bus.transaction(&mut burst).await.map_err(MegaError::Bus)?;
+        // What is sent after the command is zeros.
+        self.burst.fill(0);
+        let [_, rest @ ..] = &mut self.burst;
+        let burst = if self.is_first_burst { &mut self.burst[..] } else { rest };
+        if let [command, ..] = burst {
+            *command = BURST;
+        }
+        self.bus.transfer_in_place(burst).await.map_err(MegaError::Bus)?;
         self.is_first_burst = false;
-        for (to, pixel) in grey.iter_mut().zip(self.line.as_chunks().0) {
+        let [_, _, line @ ..] = &self.burst;
+        for (to, pixel) in grey.iter_mut().zip(line.as_chunks().0) {
             *to = grey_level(*pixel);
         }
         Ok(())

@@ -3,6 +3,7 @@
 
 use crate::mega::{
     BURST, CAMERA, FORMAT, LENGTH, LINE_BYTES, MEMORY, PICTURE_BYTES, RESET, RESOLUTION, SIZE, STATE, WRITE,
+    size_code,
 };
 use embedded_hal::spi::{Error, ErrorKind, ErrorType};
 use embedded_hal_async::spi::{Operation, SpiDevice};
@@ -31,6 +32,8 @@ impl Error for Misuse {
 #[derive(Debug)]
 pub struct Simulated<F> {
     sees: F,
+    /// Which camera it is.
+    camera: u8,
     line: [u8; SIZE],
     /// Reads of the state to come until settings are done; `None` before a reset.
     settings: Option<u32>,
@@ -44,10 +47,15 @@ pub struct Simulated<F> {
 }
 
 impl<F: FnMut(u16, &mut [u8; SIZE])> Simulated<F> {
-    /// A camera with its power on.
+    /// A camera with its power on, which says that it is a 3MP.
     pub const fn new(sees: F) -> Self {
+        Self::of(0x82, sees)
+    }
+
+    /// A camera with its power on, which says that it is this one.
+    pub const fn of(camera: u8, sees: F) -> Self {
         let (line, set) = ([0; SIZE], [0; 2]);
-        Self { sees, line, settings: None, picture: None, set, read: 0, is_waited: false }
+        Self { sees, camera, line, settings: None, picture: None, set, read: 0, is_waited: false }
     }
 
     /// A register is written.
@@ -64,7 +72,7 @@ impl<F: FnMut(u16, &mut [u8; SIZE])> Simulated<F> {
             (RESOLUTION, size) => (self.set[1], self.settings) = (size, Some(READS)),
             (MEMORY, 1) => self.picture = None,
             // RGB565, 128 x 128 pixels.
-            (MEMORY, 2) if self.set == [2, 11] => {
+            (MEMORY, 2) if self.set[0] == 2 && Some(self.set[1]) == size_code(self.camera) => {
                 (self.picture, self.read, self.is_waited) = (Some(READS), 0, false);
             }
             _ => return Err(Misuse::Command),
@@ -76,7 +84,7 @@ impl<F: FnMut(u16, &mut [u8; SIZE])> Simulated<F> {
     fn read(&mut self, register: u8) -> Result<u8, Misuse> {
         let passed = |count: &mut Option<u32>| *count = count.map(|reads| reads.saturating_sub(1));
         match register {
-            CAMERA => Ok(0x82),
+            CAMERA => Ok(self.camera),
             STATE => {
                 passed(&mut self.settings);
                 passed(&mut self.picture);
@@ -90,12 +98,17 @@ impl<F: FnMut(u16, &mut [u8; SIZE])> Simulated<F> {
         }
     }
 
-    /// Bytes of the picture go out.
-    fn burst(&mut self, command: &[u8], bytes: &mut [u8]) -> Result<(), Misuse> {
+    /// Whole lines of the picture go out.
+    fn burst(&mut self, bytes: &mut [u8]) -> Result<(), Misuse> {
         // The first one needs a byte of waiting, and no other has one.
         let waits = if self.is_waited { 1 } else { 2 };
+        let (command, bytes) = bytes.split_at_mut_checked(waits).ok_or(Misuse::Command)?;
+        if command.iter().chain(&*bytes).skip(1).any(|&sent| sent != 0) {
+            return Err(Misuse::Command);
+        }
         let end = self.read + bytes.len();
-        if command.len() != waits || self.picture != Some(0) || end > PICTURE_BYTES as usize {
+        let is_whole = bytes.len().is_multiple_of(LINE_BYTES);
+        if !is_whole || self.picture != Some(0) || end > PICTURE_BYTES as usize {
             return Err(Misuse::NoPicture);
         }
         self.is_waited = true;
@@ -123,11 +136,11 @@ impl<F: FnMut(u16, &mut [u8; SIZE])> SpiDevice for Simulated<F> {
             [Operation::Write([register, value])] if register & WRITE != 0 => {
                 self.write(register & !WRITE, *value)
             }
+            [Operation::TransferInPlace(bytes @ [BURST, ..])] => self.burst(bytes),
             [Operation::TransferInPlace([register, _, value])] if *register & WRITE == 0 => {
                 *value = self.read(*register)?;
                 Ok(())
             }
-            [Operation::Write(command @ [BURST, ..]), Operation::Read(bytes)] => self.burst(command, bytes),
             _ => Err(Misuse::Command),
         }
     }

@@ -50,6 +50,7 @@
 //! ([`Pairing::TimeStamp`]) and their row skew is measured ([`CameraPair::row_skew`]).
 
 mod format;
+mod handed;
 mod handoff;
 mod pair;
 mod ping_pong;
@@ -64,7 +65,8 @@ mod sync;
 mod trigger;
 
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
-pub use handoff::{EmptyLine, FilledLine, HandedLines, LineConsumer, LineProducer, LineSlots};
+pub use handed::HandedLines;
+pub use handoff::{EmptyLine, FilledLine, LineConsumer, LineProducer, LineSlots};
 pub use pair::{CameraPair, PairError, Pairing};
 pub use ping_pong::{Half, PingPong};
 pub use polled::PolledLines;

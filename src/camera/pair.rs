@@ -40,8 +40,8 @@ pub struct CameraPair<L, R> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Pairing {
     /// Equal sequence numbers: cameras that count the pulses of one trigger, or their own frames. Where the
-    /// camera that is behind has no newer frame ([`CameraError::TimedOut`]), it has missed a pulse: that start
-    /// fails, and from then on the pair takes the difference of their numbers for none.
+    /// camera that is behind has no newer frame ([`CameraError::TimedOut`]), it has missed a pulse: that
+    /// start fails, and from then on the pair takes the difference of their numbers for none.
     #[default]
     Sequence,
     /// Time stamps within the bound on row skew: cameras that run freely, stamped by one clock. The pair's

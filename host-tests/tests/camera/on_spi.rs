@@ -7,6 +7,7 @@ use embedded_hal_async::spi::{Operation, SpiDevice};
 use spi_cameras::frames::{self, Cameras, FrameError, Rows};
 use spi_cameras::mega::{CAMERA, LENGTH, Mega, MegaError, SIZE, STATE, grey_level};
 use spi_cameras::simulated::{Misuse, Simulated};
+use spi_cameras::text;
 use std::cell::RefCell;
 use std::pin::pin;
 use std::rc::Rc;
@@ -159,6 +160,13 @@ fn what_is_shown_of_a_fault_says_where_and_what() {
     assert_eq!(words(FrameError::Right(MegaError::Settings)), ("right", "settings", 3000));
     assert_eq!(words(FrameError::Right(MegaError::Bus(Misuse::Command))), ("right", "bus", 0));
     assert_eq!(words(FrameError::Left(MegaError::Short(0x7f00))), ("left", "short", 0x7f00));
+    let line = |words: (&'static str, &'static str, u32)| text::fault(words).collect::<Vec<_>>();
+    assert_eq!(line(words(FrameError::Left(MegaError::Unknown(0x42)))), b"left unknown 66\n");
+    assert_eq!(line(words(FrameError::Right(MegaError::Bus(Misuse::Command)))), b"right bus 0\n");
+    assert_eq!(text::frame(10, 524).collect::<Vec<_>>(), b"10 524\n");
+    let longest = [text::frame(u32::MAX, 65_535).count(), line(("pipeline", "settings", u32::MAX)).len()];
+    assert_eq!(longest, [17, 29]);
+    assert!(longest.iter().all(|&length| length <= text::LONGEST));
 }
 
 #[test]

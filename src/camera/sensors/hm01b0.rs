@@ -91,8 +91,8 @@ pub enum Hm01b0Mode {
     Standby,
     /// One frame after the other.
     Streaming,
-    /// Frames while its pin TRIG is high. For one frame hold it until the frame's last line has come, and take
-    /// it back before the next one begins. Sensors on one pin begin together.
+    /// Frames while its pin TRIG is high. For one frame hold it until the frame's last line has come, and
+    /// take it back before the next one begins. Sensors on one pin begin together.
     Triggered,
 }
 

@@ -22,6 +22,7 @@ use esp_hal::uart::{Config as UartConfig, Uart};
 use esp_hal::{Async, Blocking};
 use spi_cameras::frames::{self, Cameras, Rows};
 use spi_cameras::mega::{BURST_BYTES, Mega};
+use spi_cameras::text;
 use static_cell::{ConstStaticCell, StaticCell};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
@@ -81,7 +82,7 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: Uart<'stati
     loop {
         // After a fault both begin anew.
         if !is_set_up && let Err(error) = cameras.set_up().await {
-            say(&mut uart, error.words());
+            write(&mut uart, text::fault(error.words()));
             cameras.rest().await;
             continue;
         }
@@ -90,39 +91,22 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: Uart<'stati
             let depths = row.disparities().iter().map(|&d| scale.millimetres(d).0);
             nearest_mm = depths.filter(|&mm| mm > 0).fold(nearest_mm, u16::min); // 0 is no answer.
         });
-        let taken = taken.await;
-        is_set_up = taken.is_ok();
-        if let Err(error) = taken {
-            say(&mut uart, error.words());
+        let fault = taken.await.err().map(|error| error.words());
+        is_set_up = fault.is_none();
+        if let Some(words) = fault {
+            write(&mut uart, text::fault(words));
         } else {
             sequence = sequence.wrapping_add(1);
-            for (number, end) in [(sequence, b' '), (nearest_mm.into(), b'\n')] {
-                write(&mut uart, number, end);
-            }
+            write(&mut uart, text::frame(sequence, nearest_mm));
         }
     }
 }
 
-/// Says what is wrong.
-fn say(uart: &mut Uart<'static, Blocking>, (at, what, number): (&str, &str, u32)) {
-    for byte in [at, " ", what, " "].into_iter().flat_map(str::bytes) {
-        let _ = uart.write(&[byte]);
-    }
-    write(uart, number, b'\n');
-}
-
-/// Writes a number and what follows it.
-fn write(uart: &mut Uart<'static, Blocking>, mut number: u32, end: u8) {
-    let (mut text, mut first) = ([end; 11], 10);
-    for (at, digit) in text.iter_mut().enumerate().rev().skip(1) {
-        (*digit, number, first) = (b'0' + (number % 10) as u8, number / 10, at);
-        if number == 0 {
-            break;
-        }
-    }
-    for byte in text.get(first..).unwrap_or_default() {
+/// Writes a line.
+fn write(uart: &mut Uart<'static, Blocking>, line: impl Iterator<Item = u8>) {
+    for byte in line {
         // Nobody is there to be told when the UART fails.
-        let _ = uart.write(&[*byte]);
+        let _ = uart.write(&[byte]);
     }
 }
 

@@ -22,6 +22,7 @@ use embassy_sync::mutex::Mutex;
 use embassy_time::Delay;
 use spi_cameras::frames::{self, Cameras, Rows};
 use spi_cameras::mega::Mega;
+use spi_cameras::text;
 use static_cell::{ConstStaticCell, StaticCell};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::RectifiedRig;
@@ -86,7 +87,7 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: UarteTx<'st
     loop {
         // After a fault both begin anew.
         if !is_set_up && let Err(error) = cameras.set_up().await {
-            say(&mut uart, error.words()).await;
+            write(&mut uart, text::fault(error.words())).await;
             cameras.rest().await;
             continue;
         }
@@ -95,38 +96,25 @@ async fn depth(mut cameras: Pair, rows: &'static mut Rows, mut uart: UarteTx<'st
             let depths = row.disparities().iter().map(|&d| scale.millimetres(d).0);
             nearest_mm = depths.filter(|&mm| mm > 0).fold(nearest_mm, u16::min); // 0 is no answer.
         });
-        let taken = taken.await;
-        is_set_up = taken.is_ok();
-        if let Err(error) = taken {
-            say(&mut uart, error.words()).await;
+        let fault = taken.await.err().map(|error| error.words());
+        is_set_up = fault.is_none();
+        if let Some(words) = fault {
+            write(&mut uart, text::fault(words)).await;
         } else {
             sequence = sequence.wrapping_add(1);
-            for (number, end) in [(sequence, b' '), (nearest_mm.into(), b'\n')] {
-                write(&mut uart, number, end).await;
-            }
+            write(&mut uart, text::frame(sequence, nearest_mm)).await;
         }
     }
 }
 
-/// Says what is wrong.
-async fn say(uart: &mut UarteTx<'static>, (at, what, number): (&str, &str, u32)) {
-    for word in [at, " ", what, " "] {
-        let _ = uart.write(word.as_bytes()).await;
-    }
-    write(uart, number, b'\n').await;
-}
-
-/// Writes a number and what follows it.
-async fn write(uart: &mut UarteTx<'static>, mut number: u32, end: u8) {
-    let (mut text, mut first) = ([end; 11], 10);
-    for (at, digit) in text.iter_mut().enumerate().rev().skip(1) {
-        (*digit, number, first) = (b'0' + (number % 10) as u8, number / 10, at);
-        if number == 0 {
-            break;
-        }
+/// Writes a line.
+async fn write(uart: &mut UarteTx<'static>, line: impl Iterator<Item = u8>) {
+    let (mut text, mut length) = ([0; text::LONGEST], 0);
+    for (to, byte) in text.iter_mut().zip(line) {
+        (*to, length) = (byte, length + 1);
     }
     // Nobody is there to be told when the UART fails.
-    let _ = uart.write(text.get(first..).unwrap_or_default()).await;
+    let _ = uart.write_from_ram(text.get(..length).unwrap_or_default()).await;
 }
 
 /// The vendor's library panics where it is misused; the core stops then, and a debugger says where.

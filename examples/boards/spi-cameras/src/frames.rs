@@ -94,8 +94,8 @@ impl<L: SpiDevice, R: SpiDevice, D: DelayNs> Cameras<L, R, D> {
         both(join(left.take(), right.take()).await)?;
         both(join(left.taken(first), right.taken(second)).await)?;
         rows.begin().map_err(FrameError::Begin)?;
-        // A pair of lines is on its way while the other one is matched: the transfers begin when they are polled
-        // first, before the matcher is.
+        // A pair of lines is on its way while the other one is matched: the transfers are polled first, and
+        // so begin before the matcher does.
         let mut lines = [[[0; SIZE]; 2]; 2];
         let [coming, there] = &mut lines;
         let (mut coming, mut there) = (coming, there);

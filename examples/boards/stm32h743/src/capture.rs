@@ -142,8 +142,8 @@ pub async fn run(port: Port) -> ! {
     }
 }
 
-/// Sets the port up. A reset stops it within a frame too, and leaves neither flags nor words of a line that was
-/// broken off.
+/// Sets the port up. A reset stops it within a frame too, and leaves neither flags nor words of a broken
+/// line.
 fn set_up() {
     embassy_stm32::rcc::enable_and_reset::<DCMI>();
     pac::DCMI.cr().write(|cr| {

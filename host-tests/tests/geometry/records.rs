@@ -66,6 +66,25 @@ fn what_is_read_is_written_again() {
     }
 }
 
+/// A pose that was composed many times is off from a rotation by what each product rounds: a rig of it is
+/// read again.
+#[test]
+fn rigs_of_composed_poses_are_read_again() {
+    let camera = Camera::new(500.0_f32, 490.0, 320.0, 240.0).expect("a camera");
+    let turn = *Rotation3::from_euler_angles(0.3, -0.2, 0.5).matrix();
+    let step = Pose::new(turn, Vector3::new(0.1, 0.02, 0.0)).expect("a pose");
+    let (mut pose, mut most) = (step, 0.0_f32);
+    for case in 0..300 {
+        let off = (pose.rotation().transpose() * pose.rotation() - Matrix3::identity()).amax();
+        most = most.max(off);
+        let rig = StereoRig::new([camera; 2], pose, [ImageSize { width: 640, height: 480 }; 2]);
+        let rig = rig.expect("a rig");
+        assert_eq!(StereoRig::from_record(&rig.to_record()), Ok(rig), "{case}: {off}");
+        pose = pose.then(&step);
+    }
+    assert!(most > 2e-6 && most < 2e-4, "{most}");
+}
+
 #[test]
 fn extreme_numbers_are_refused_by_name() {
     let record = rig(&mut Random::new(12)).to_record();

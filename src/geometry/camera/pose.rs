@@ -48,7 +48,7 @@ impl<T: Real> Pose<T> {
 
     /// Largest element of `R^T R - I`. Four decimals put each number off by 5e-5, which moves the square of a
     /// unit column's length by 1e-4 times the sum of its three numbers: by 1.74e-4 at most.
-    const TOLERANCE: f64 = 2e-4;
+    pub(super) const TOLERANCE: f64 = 2e-4;
 
     /// No pose yet, in what waits for one. All zeros.
     pub(crate) const NOTHING: Self = {

@@ -126,7 +126,7 @@ impl<T: Real> StereoRig<T> {
     /// not whole, of another version or of impossible numbers is refused by name: there is no rig by
     /// default.
     ///
-    /// R is held as it is recorded, off from a rotation by 1e-6 at the most, which is what `f32` rounds: in
+    /// R is held as it is recorded, off from a rotation by 2e-4 at the most, as [`Pose::new`] accepts: in
     /// `f64`, [`Self::to_record`] writes again the bytes that were read.
     pub fn from_record(bytes: &[u8]) -> Result<Self, RecordError> {
         let too_short = RecordError::TooShort { needed: Self::RECORD_BYTES };
@@ -161,7 +161,7 @@ impl<T: Real> StereoRig<T> {
         let first = camera(0, u16::from_le_bytes([m0, m1]), first)?;
         let second = camera(1, u16::from_le_bytes([n0, n1]), second)?;
         let rotation = Matrix3::new(r0, r1, r2, r3, r4, r5, r6, r7, r8);
-        let pose = Pose::of_parts(rotation, Vector3::new(t0, t1, t2)).checked(T::of(1e-6));
+        let pose = Pose::of_parts(rotation, Vector3::new(t0, t1, t2)).checked(T::of(Pose::<T>::TOLERANCE));
         let pose = pose.map_err(|error| RecordError::Rig(StereoRigError::Pose(error)))?;
         Self::new([first, second], pose, sizes).map_err(RecordError::Rig)
     }

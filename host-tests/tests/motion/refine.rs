@@ -157,6 +157,32 @@ fn without_noise_it_is_the_truth() {
     }
 }
 
+/// One camera that stands still, then goes, and comes back to where it was: there is a distance to hold where
+/// one view has moved, and the last view is found in each case.
+#[test]
+fn one_camera_that_stands_still_is_refined() {
+    let wrong = pose([0.002, -0.001, 0.001], [0.02, 0.01, -0.02]);
+    for stops in [[0, 0, 0, 0, 0], [0, 0, 0, 0, 1], [0, 0, 1, 1, 0], [0, 2, 0, 0, 1], [0, 1, 0, 0, 0]] {
+        let mut refined = Box::new(Refined::new());
+        refined.start(&rig(), RefinementConfig { views: 5, ..config() });
+        let mut report = None;
+        for (n, &stop) in stops.iter().enumerate() {
+            let motion = path(stops[n.saturating_sub(1)]).inverse().then(&path(stop));
+            let seen = seen(stop, 0.0, false).into_iter().map(|s| {
+                let own = path(stop).inverse_transform(&points()[usize::from(s.name.0)]);
+                ObservedPoint { inverse: Vector3::new(own.x / own.z, own.y / own.z, 1.0 / own.z), ..s }
+            });
+            // The last motion is told wrong.
+            let told = if n == 4 { motion.then(&wrong) } else { motion };
+            report = refined.push(&told, seen).expect("a problem");
+        }
+        let report = report.expect("an adjustment");
+        assert!(report.steps > 0 && report.cost < 1e-3 * report.initial_cost, "{stops:?}: {report:?}");
+        let truth = path(stops[0]).inverse().then(&path(stops[4]));
+        assert!(off(&refined.poses()[4], &truth) < 1e-3, "{stops:?}: {}", off(&refined.poses()[4], &truth));
+    }
+}
+
 #[test]
 fn what_has_nothing_in_common_begins_anew() {
     let mut refined = Box::new(Refined::new());

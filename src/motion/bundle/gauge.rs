@@ -14,8 +14,8 @@ pub enum Gauge {
     /// Views of this range are held where they are. One fixes the frame, and with rigs of two cameras all;
     /// two fix the scale as well.
     Views(Range<u16>),
-    /// The view `held` is held, and `other` keeps its distance from it: seven numbers, as many as the images
-    /// leave open.
+    /// The view `held` is held, and `other`, which is in another place, keeps its distance from it: seven
+    /// numbers, as many as the images leave open.
     Baseline {
         /// The view that is the frame.
         held: u16,
@@ -34,13 +34,34 @@ pub(super) enum Freedom<T> {
 }
 
 impl Gauge {
-    /// The last view that it names, and whether it names two that are one, or none.
+    /// Whether every view that it names exists, and a baseline's two views are different.
     pub(super) fn is_sound(&self, views: usize) -> bool {
         match self {
             Self::Free => true,
             Self::Views(held) => held.start < held.end && usize::from(held.end) <= views,
             Self::Baseline { held, other } => held != other && usize::from(*held.max(other)) < views,
         }
+    }
+
+    /// The baseline from the first of these views to the one farthest from it; `None` where all are in one
+    /// place, to the root of a rounding of the unit.
+    pub(crate) fn longest_baseline<T: Real>(poses: &[Pose<T>]) -> Option<Self> {
+        let first = poses.first()?;
+        let (mut longest, mut found) = (T::EPSILON, None);
+        for (other, pose) in (0..).zip(poses) {
+            let squared = (pose.translation() - first.translation()).norm_squared();
+            if squared >= longest {
+                (longest, found) = (squared, Some(Self::Baseline { held: 0, other }));
+            }
+        }
+        found
+    }
+
+    /// Whether the views of a baseline, which are at `place`, are in different places.
+    pub(super) fn has_length<T: Real>(&self, place: impl Fn(u16) -> Option<Vector3<T>>) -> bool {
+        let Self::Baseline { held, other } = self else { return true };
+        let apart = place(*held).zip(place(*other)).map(|(held, other)| (held - other).norm());
+        apart.is_some_and(|apart| apart > T::ZERO && apart.is_finite())
     }
 
     /// Whether it holds frame and scale; `lengths`: there are rigs, whose own baseline is a scale.

@@ -50,7 +50,8 @@ pub enum BundleError {
     /// What this observation shows cannot be seen there: the point is behind the camera, or it or the view is
     /// not finite.
     NotSeen(usize),
-    /// The gauge names a view that there is not, or one twice, or none.
+    /// The gauge names a view that there is not, or one twice, or none, or the views of its baseline are in
+    /// one place.
     Gauge,
     /// A tolerance, the damping or the width of the loss is not greater than zero.
     Config,
@@ -80,7 +81,7 @@ error_text!(BundleError {
     Self::Unsorted(at) => "observation {at} stands behind one of a later point",
     Self::NotFinite(at) => "a coordinate of observation {at} is not finite",
     Self::NotSeen(at) => "the point of observation {at} is not before its camera, or not finite",
-    Self::Gauge => "the gauge must name views that there are",
+    Self::Gauge => "the gauge must name views that there are, a baseline two in different places",
     Self::Config => "tolerances, damping and the loss's width must be greater than zero",
     Self::Workspace(need) =>
         "the workspace needs {} slots, {} terms, {} points and {} blocks"
@@ -111,7 +112,7 @@ pub(crate) fn tracks<T: Real>(
 
 impl<V, T: Real> Problem<'_, V, T> {
     /// Refuses indices and numbers that cannot be.
-    fn check(&self) -> Result<(), BundleError> {
+    pub(crate) fn check(&self) -> Result<(), BundleError> {
         if self.observations.is_empty() {
             return Err(BundleError::Empty);
         }
@@ -142,7 +143,8 @@ pub(super) fn prepare<V: View<T, N>, T: Real, const N: usize>(
     workspace: &mut BundleWorkspaceView<'_, V, T, N>,
 ) -> Result<(), BundleError> {
     problem.check()?;
-    if !gauge.is_sound(problem.views.len()) {
+    let place = |at: u16| problem.views.get(usize::from(at)).map(|view| *view.pose().translation());
+    if !gauge.is_sound(problem.views.len()) || !gauge.has_length(place) {
         return Err(BundleError::Gauge);
     }
     let longest = tracks(problem.observations).map(<[_]>::len).max().unwrap_or(0).min(problem.views.len());

@@ -264,11 +264,12 @@ impl<T: Real, const VIEWS: usize, const POINTS: usize, const OBSERVATIONS: usize
         }
         let views = self.poses.len() as u16;
         let held = (self.config.held as u16).clamp(1, views - 1);
-        // Of one camera a distance is held as well: the longest of what was adjusted before.
         let gauge = if has_unit || held > 1 {
             Gauge::Views(0..held)
         } else {
-            Gauge::Baseline { held: 0, other: (views - 2).max(1) }
+            // Of one camera a distance is held as well, if one of the views adjusted before has moved.
+            let before = self.poses.get(..self.poses.len().saturating_sub(1).max(2)).unwrap_or(&[]);
+            Gauge::longest_baseline(before).unwrap_or(Gauge::Views(0..views - 1))
         };
         let config = BundleConfig {
             loss: Loss::Huber(self.config.width_px),

@@ -3,6 +3,7 @@
 use super::scene::{Scene, calibrated, scene};
 use super::twin::Room;
 use nalgebra::{Point2, Point3};
+use stereopsis::geometry::camera::Pose;
 use stereopsis::motion::bundle::{
     BundleConfig, BundleError, BundleWorkspaceView, CameraView, Gauge, Loss, Problem, Window, WindowError,
     WorkspaceSize, adjust,
@@ -50,6 +51,12 @@ fn configurations() {
         assert_eq!(of(&|c| c.gauge = gauge.clone()), Some(BundleError::Gauge));
     }
     assert_eq!(of(&|c| c.gauge = Gauge::Baseline { held: 0, other: 3 }), Some(BundleError::Gauge));
+    let baseline = BundleConfig::new(Gauge::Baseline { held: 2, other: 0 });
+    let mut scene = good();
+    assert_eq!(refusal(&scene, baseline.clone()), None);
+    let place = *scene.views[2].pose.translation();
+    scene.views[0].pose = Pose::new(*scene.views[0].pose.rotation(), place).expect("a pose");
+    assert_eq!(refusal(&scene, baseline), Some(BundleError::Gauge));
     assert_eq!(of(&|c| c.loss = Loss::Huber(0.0)), Some(BundleError::Config));
     assert_eq!(of(&|c| c.cost_tolerance = f64::NAN), Some(BundleError::Config));
     assert_eq!(of(&|c| c.step_tolerance = -1.0), Some(BundleError::Config));

@@ -184,8 +184,9 @@ fn best_partner(
     }
     let Some(chosen) = right.get(usize::from(best.partner)) else { return Best::NONE };
     let elsewhere = |other: &Feature| {
-        (other.x_px - chosen.x_px).abs() >= search.apart_px
-            || (other.y_px - chosen.y_px).abs() >= search.apart_px
+        !core::ptr::eq(other, chosen)
+            && ((other.x_px - chosen.x_px).abs() >= search.apart_px
+                || (other.y_px - chosen.y_px).abs() >= search.apart_px)
     };
     let others =
         right.iter().zip(slots.iter()).filter(|(other, _)| elsewhere(other)).map(|(_, slot)| slot.different);

@@ -130,6 +130,8 @@ fn matches_under_every_search() {
         found.push(core.len());
     }
     assert!(found[0] >= 10 && found[2] < found[0] && found[4] > found[0], "{found:?}");
+    // With no distance asked for, every other partner competes, but not the best one with itself.
+    assert!(found[3] > 0 && found[3] <= found[0], "{found:?}");
     assert_eq!(matched(&left, &[], &every), []);
     assert_eq!(matched(&[], &right, &every), []);
 }

@@ -190,8 +190,8 @@ pub fn matches(left: &[Feature], right: &[Feature], search: &MatchConfig) -> Vec
         let apart = |c: &Feature| {
             (c.x_px - b.x_px).abs() >= search.apart_px || (c.y_px - b.y_px).abs() >= search.apart_px
         };
-        let second = best(right, &|c| admitted(a, c) && apart(c), &|c| bits(a, c));
-        let second = second.map_or(128, |k| bits(a, &right[k]).min(128));
+        let others = (0..right.len()).filter(|&k| k != j && admitted(a, &right[k]) && apart(&right[k]));
+        let second = others.map(|k| bits(a, &right[k])).min().unwrap_or(128).min(128);
         let clear = 100 * bits(a, b) < usize::from(search.ratio_percent) * second;
         let close = bits(a, b) <= usize::from(search.most_different);
         if clear && close && best(left, &|a| admitted(a, b), &|a| bits(a, b)) == Some(i) {

@@ -83,7 +83,7 @@ macro_rules! c_api_of_focus_and_motion {
         }
 
         /// Ends the stack: then all peaks are known. Fails with `STEREOPSIS_STATUS_LINES_MISSING` before the
-        /// last line of a frame, and with `_NO_LINE_LEFT` where it has ended.
+        /// last line of a frame, and with `_NOT_STARTED` where it has ended.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_focus_finish"))]
         pub unsafe extern "C" fn stereopsis_focus_finish(handle: *mut FocusHandle) -> Status {
             // SAFETY: as above.

@@ -2529,7 +2529,7 @@ stereopsis_status stereopsis_focus_push(struct stereopsis_focus *handle, const u
 
 /**
  * Ends the stack: then all peaks are known. Fails with `STEREOPSIS_STATUS_LINES_MISSING` before the
- * last line of a frame, and with `_NO_LINE_LEFT` where it has ended.
+ * last line of a frame, and with `_NOT_STARTED` where it has ended.
  */
 stereopsis_status stereopsis_focus_finish(struct stereopsis_focus *handle);
 

@@ -243,7 +243,7 @@ impl<'a> FocusMapView<'a> {
     pub fn finish(&mut self) -> Result<(), FocusLineError> {
         let state = &mut *self.state;
         if !state.is_running {
-            return Err(FocusLineError::NoLineDue);
+            return Err(FocusLineError::NotStarted);
         }
         state.check_complete()?;
         state.measure_brightness();

@@ -76,7 +76,7 @@ static void maps(void) {
     EXPECT(stereopsis_focus_row(h, 0, peaks, COLUMNS), FOCUS_NOT_FINISHED);
     EXPECT(stereopsis_focus_finish(NULL), NULL);
     EXPECT(stereopsis_focus_finish(h), OK);
-    EXPECT(stereopsis_focus_finish(h), NO_LINE_LEFT);
+    EXPECT(stereopsis_focus_finish(h), NOT_STARTED);
     EXPECT(stereopsis_focus_begin_frame(h, 1.0f), NOT_STARTED);
     EXPECT(stereopsis_focus_row(NULL, 0, peaks, COLUMNS), NULL);
     EXPECT(stereopsis_focus_row(h, 0, NULL, COLUMNS), NULL);

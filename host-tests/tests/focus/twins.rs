@@ -231,7 +231,7 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(map.push(&[0; 16], |_| {}), Err(FocusLineError::NoLineDue));
     map.finish().expect("a whole frame");
     assert_eq!(map.peak(0, 0), Err(NoFocus::TooFewFrames { needed: 3 }));
-    assert_eq!(map.finish(), Err(FocusLineError::NoLineDue));
+    assert_eq!(map.finish(), Err(FocusLineError::NotStarted));
     for scale in [0.49, 2.01, f32::NAN, -1.0] {
         assert_eq!(Breathing::new(scale), Err(FocusLineError::Scale));
     }

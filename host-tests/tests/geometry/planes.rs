@@ -57,7 +57,8 @@ proptest! {
         });
         let (motion, votes) = right.expect("one of the two is right");
         prop_assert_eq!(*votes, 20);
-        prop_assert!((motion.with_distance(d2).translation() - views.pose.translation()).amax() < 1e-6);
+        let metric = motion.with_distance(d2).expect("a distance");
+        prop_assert!((metric.translation() - views.pose.translation()).amax() < 1e-6);
         let aside = motion.relative_pose().expect("a baseline").direction().angle(views.pose.translation());
         prop_assert!(aside < 1e-6);
     }

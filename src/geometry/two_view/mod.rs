@@ -39,6 +39,7 @@ pub use line::{Epipole, Line};
 pub use model_choice::{ModelChoice, TwoViewModel, choose, gric};
 pub use plane_motion::{PlaneMotion, PlaneMotionError};
 pub use recover::{RecoverError, RecoveredPose};
+pub(crate) use relative::scaled;
 pub use relative::{RelativePose, ScaleError};
 pub(crate) use seven_point::{Candidates, seven_point};
 pub use triangulate::{Triangulated, TriangulationError, TwoViews};

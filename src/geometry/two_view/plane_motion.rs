@@ -2,7 +2,7 @@
 
 use super::correspondence::Correspondence;
 use super::homography::Homography;
-use super::relative::RelativePose;
+use super::relative::{RelativePose, ScaleError, scaled};
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, Pose};
 use crate::geometry::linear::{Svd3, columns3};
@@ -58,8 +58,8 @@ impl<T: Real> PlaneMotion<T> {
     }
 
     /// The pose in metres of a plane that is `distance_m` from camera 2.
-    pub fn with_distance(&self, distance_m: T) -> Pose<T> {
-        Pose::of_parts(self.rotation, self.translation * distance_m)
+    pub fn with_distance(&self, distance_m: T) -> Result<Pose<T>, ScaleError> {
+        scaled(self.rotation, self.translation, distance_m)
     }
 
     /// Whether the plane, where a ray of camera 2 meets it, is in front of both cameras.
@@ -187,7 +187,11 @@ mod tests {
                 && (m.normal() - Vector3::z()).amax() < 1e-12
         };
         let found = motions.iter().find(right).expect("one of the four is right");
-        assert!((found.with_distance(2.0).translation() - pose.translation()).amax() < 1e-12);
+        let metric = found.with_distance(2.0).expect("a distance");
+        assert!((metric.translation() - pose.translation()).amax() < 1e-12);
+        for distance_m in [0.0, -2.0, f64::INFINITY, f64::NAN, 1e200] {
+            assert_eq!(found.with_distance(distance_m), Err(ScaleError::Length), "{distance_m}");
+        }
         let turned = Homography::from_matrix(&Matrix3::<f64>::identity()).expect("H");
         assert_eq!(turned.motions(&camera, &camera), Err(PlaneMotionError::NoBaseline));
         assert!((turned.rotation(&camera, &camera) - Matrix3::identity()).amax() < 1e-15);

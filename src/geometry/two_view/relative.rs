@@ -33,11 +33,14 @@ pub enum ScaleError {
     Length,
     /// The two points are one, or not finite.
     SamePoint,
+    /// The place of one of the two views or points is not known.
+    Unknown,
 }
 
 error_text!(ScaleError {
     Self::Length => "the known length must be greater than zero and finite",
     Self::SamePoint => "the two points of the known length must be different and finite",
+    Self::Unknown => "where both ends of the known length are must be known",
 });
 
 impl<T: Real> RelativePose<T> {
@@ -71,11 +74,7 @@ impl<T: Real> RelativePose<T> {
 
     /// The pose in metres of cameras that are `baseline_m` apart.
     pub fn with_baseline(&self, baseline_m: T) -> Result<Pose<T>, ScaleError> {
-        if !(baseline_m > T::ZERO && baseline_m.is_finite()) {
-            return Err(ScaleError::Length);
-        }
-        let pose = Pose::of_parts(self.rotation, self.direction.into_inner() * baseline_m);
-        pose.sound().ok_or(ScaleError::Length)
+        scaled(self.rotation, self.direction.into_inner(), baseline_m)
     }
 
     /// The pose in metres, of two points that were triangulated in baselines ([`Self::in_baselines`]) and are
@@ -87,6 +86,18 @@ impl<T: Real> RelativePose<T> {
         }
         self.with_baseline(length_m / baselines)
     }
+}
+
+/// The pose of a translation in units of a length.
+pub(crate) fn scaled<T: Real>(
+    rotation: Matrix3<T>,
+    translation: Vector3<T>,
+    length_m: T,
+) -> Result<Pose<T>, ScaleError> {
+    if !(length_m > T::ZERO && length_m.is_finite()) {
+        return Err(ScaleError::Length);
+    }
+    Pose::of_parts(rotation, translation * length_m).sound().ok_or(ScaleError::Length)
 }
 
 #[cfg(test)]

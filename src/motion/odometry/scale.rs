@@ -9,7 +9,7 @@ use super::step::Step;
 use crate::geometry::{
     Real,
     camera::{Camera, Pose, RectifiedRig},
-    two_view::Correspondence,
+    two_view::{Correspondence, ScaleError, scaled},
 };
 use nalgebra::Point2;
 
@@ -43,9 +43,9 @@ impl<V> Unscaled<V> {
 
 impl<T: Real> Unscaled<Step<T>> {
     /// The motion in metres, of a first baseline of so many.
-    pub fn motion_m(&self, first_baseline_m: T) -> Pose<T> {
+    pub fn motion_m(&self, first_baseline_m: T) -> Result<Pose<T>, ScaleError> {
         let motion = &self.0.motion;
-        Pose::of_parts(*motion.rotation(), motion.translation() * first_baseline_m)
+        scaled(*motion.rotation(), *motion.translation(), first_baseline_m)
     }
 }
 

@@ -56,7 +56,8 @@ pub enum StructureError {
     Config,
     /// No two views give a pose; this is why, of those with most in common.
     NoPair(InitialPairError),
-    /// The observations are none, or the memory is too small.
+    /// There is no observation; or one is out of order, not finite, or names a view or a point that there is
+    /// not; or the bundle's workspace is too small.
     Bundle(BundleError),
     /// The slices for matches, landmarks, inliers or observations are too short; so many are needed.
     Memory(usize),
@@ -68,13 +69,13 @@ pub enum StructureError {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ViewState {
-    /// Not yet anything.
+    /// Its pose has not been looked for yet.
     Unknown,
-    /// Where it stands.
+    /// Its pose is known.
     Registered,
     /// The view sees fewer than six points that are known.
     TooFew,
-    /// What it sees agrees on no pose.
+    /// Its observations agree on no pose.
     NoAgreement,
 }
 
@@ -84,9 +85,9 @@ pub enum ViewState {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PointState {
-    /// Fewer than two views that stand somewhere see it.
+    /// Fewer than two views of known pose see it.
     Unknown,
-    /// Where it is.
+    /// Its position is known.
     Triangulated,
     /// The observations are nearly parallel: the point is far away, or at infinity.
     Far,

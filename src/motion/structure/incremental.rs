@@ -57,6 +57,8 @@ pub fn structure<'a, T: Real>(
     if let Some(needed) = memory.missing(observations.len()) {
         return Err(StructureError::Memory(needed));
     }
+    let StructureWorkspaceView { views, points, .. } = &mut memory;
+    Problem { views, points, observations }.check().map_err(StructureError::Bundle)?;
     memory.view_states.fill(ViewState::Unknown);
     memory.states.fill(PointState::Unknown);
     let (first, second, found) = best_pair(&mut memory, observations, config)?;

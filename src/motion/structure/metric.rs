@@ -83,7 +83,7 @@ impl<'a, T: Real> Structure<'a, T> {
     ) -> Result<MetricStructure<'a, T>, ScaleError> {
         let units = match (self.pose(a), self.pose(b)) {
             (Ok(a), Ok(b)) => (a.translation() - b.translation()).norm(),
-            _ => return Err(ScaleError::SamePoint),
+            _ => return Err(ScaleError::Unknown),
         };
         self.0.scale(units, metres)?;
         Ok(MetricStructure(self.0))
@@ -97,7 +97,7 @@ impl<'a, T: Real> Structure<'a, T> {
     ) -> Result<MetricStructure<'a, T>, ScaleError> {
         let units = match (self.point(a), self.point(b)) {
             (Ok(a), Ok(b)) => (a - b).norm(),
-            _ => return Err(ScaleError::SamePoint),
+            _ => return Err(ScaleError::Unknown),
         };
         self.0.scale(units, metres)?;
         Ok(MetricStructure(self.0))

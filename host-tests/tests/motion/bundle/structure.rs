@@ -3,11 +3,15 @@
 use super::scene::{Scene, calibrated, pose, scene};
 use super::twin::Room;
 use nalgebra::{Point2, Point3};
-use stereopsis::geometry::{absolute::Landmark, camera::Pose, two_view::Correspondence};
-use stereopsis::motion::bundle::{CameraView, Observation, View};
+use stereopsis::geometry::{
+    absolute::Landmark,
+    camera::Pose,
+    two_view::{Correspondence, ScaleError},
+};
+use stereopsis::motion::bundle::{BundleError, CameraView, Observation, View};
 use stereopsis::motion::structure::{
-    InitialPairError, MetricStructure, PointState, StructureConfig, StructureError, StructureReport,
-    StructureWorkspace, StructureWorkspaceView, ViewState, structure,
+    InitialPairError, MetricStructure, PointState, Structure, StructureConfig, StructureError,
+    StructureReport, StructureWorkspace, StructureWorkspaceView, ViewState, structure,
 };
 use stereopsis_host::scene::Random;
 
@@ -190,7 +194,43 @@ fn no_views_or_observations_are_refused() {
     let mut none = scene(views(2), 20, 1, 0.0, |_, _| true);
     none.observations.clear();
     let error = found(&none, |_, _| ()).err();
-    assert_eq!(error, Some(StructureError::NoPair(InitialPairError::TooFew)));
+    assert_eq!(error, Some(StructureError::Bundle(BundleError::Empty)));
+}
+
+/// An index or a number that cannot be is named by its place among the caller's observations.
+#[test]
+fn observations_that_cannot_be_are_refused() {
+    let with = |change: &dyn Fn(&mut [Observation<f64>])| {
+        let mut seen = scene(views(3), 20, 1, 0.0, |_, _| true);
+        change(&mut seen.observations);
+        found(&seen, |_, _| ()).err()
+    };
+    let refused = |error| Some(StructureError::Bundle(error));
+    assert_eq!(with(&|_| ()), None);
+    assert_eq!(with(&|s| s[4].view = 3), refused(BundleError::View(4)));
+    assert_eq!(with(&|s| s[59].point = 20), refused(BundleError::Point(59)));
+    assert_eq!(with(&|s| s.swap(29, 30)), refused(BundleError::Unsorted(30)));
+    assert_eq!(with(&|s| s[7].pixel.x = f64::NAN), refused(BundleError::NotFinite(7)));
+}
+
+#[test]
+fn a_length_between_unknown_ends_is_no_scale() {
+    let seen = scene(views(4), 40, 1, 0.0, |view, point| view < 3 || point < 5);
+    let cameras: Vec<_> = seen.views.iter().map(|view| view.camera).collect();
+    let mut room = Box::new(StructureWorkspace::<f64, 4, 40, 160>::new());
+    let mut scaled = |by: &dyn Fn(Structure<'_, f64>) -> Option<ScaleError>| {
+        let memory = room.as_mut_view(&cameras, seen.points.len()).expect("room");
+        let (found, _) =
+            structure(memory, &seen.observations, &StructureConfig::new(1.5)).expect("a structure");
+        by(found)
+    };
+    assert_eq!(scaled(&|found| found.with_baseline((0, 3), 1.0).err()), Some(ScaleError::Unknown));
+    assert_eq!(scaled(&|found| found.with_baseline((9, 0), 1.0).err()), Some(ScaleError::Unknown));
+    assert_eq!(scaled(&|found| found.with_baseline((1, 1), 1.0).err()), Some(ScaleError::SamePoint));
+    assert_eq!(scaled(&|found| found.with_length((0, 40), 1.0).err()), Some(ScaleError::Unknown));
+    assert_eq!(scaled(&|found| found.with_length((2, 2), 1.0).err()), Some(ScaleError::SamePoint));
+    assert_eq!(scaled(&|found| found.with_length((0, 1), -1.0).err()), Some(ScaleError::Length));
+    assert_eq!(scaled(&|found| found.with_length((0, 1), 1.0).err()), None);
 }
 
 #[test]

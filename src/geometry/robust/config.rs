@@ -7,7 +7,7 @@ use crate::geometry::Real;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Sampling {
-    /// All alike.
+    /// Every correspondence is equally likely to be drawn.
     #[default]
     Uniform,
     /// The first ones first: the correspondences come in order, those that are most likely right before the
@@ -16,7 +16,7 @@ pub enum Sampling {
     Ordered,
 }
 
-/// What is asked of [`robust_fundamental`](super::robust_fundamental).
+/// Configuration of the robust estimators of this module.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

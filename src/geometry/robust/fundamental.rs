@@ -18,7 +18,7 @@ pub enum RobustError {
     TooFew,
     /// A number is infinite or not a number.
     NotFinite,
-    /// The threshold is not greater than zero, or not a number.
+    /// The threshold is not greater than zero, or not finite.
     Threshold,
     /// The probability of a miss is not between zero and one.
     MissProbability,
@@ -26,8 +26,8 @@ pub enum RobustError {
     NoSamples,
     /// The slice for the inliers is shorter than the correspondences; this many are needed.
     Inliers(usize),
-    /// No sample of seven gave an estimate that more than seven correspondences agree with: all are wrong, or
-    /// the same, or the ones of an image are on a line.
+    /// No sample gave an estimate that more correspondences than the sample agree with: all are wrong, or the
+    /// same, or the ones of an image are on a line.
     NoAgreement,
     /// What agrees is on a plane, or the camera has only rotated: a homography is the answer. Off the plane
     /// no more agree than by chance. The inliers say which are on it.
@@ -37,11 +37,11 @@ pub enum RobustError {
 error_text!(RobustError {
     Self::TooFew => "a fundamental matrix needs eight correspondences",
     Self::NotFinite => "a coordinate is not finite",
-    Self::Threshold => "the threshold must be greater than zero",
+    Self::Threshold => "the threshold must be greater than zero and finite",
     Self::MissProbability => "the probability of a miss must be between zero and one",
     Self::NoSamples => "one sample at least is needed",
     Self::Inliers(needed) => "the inliers need a slice of {needed}",
-    Self::NoAgreement => "no fundamental matrix has more than seven correspondences agree with it",
+    Self::NoAgreement => "no estimate has more correspondences agree with it than a sample has",
     Self::Plane => "what agrees is on a plane, or the camera has only rotated: a homography is the answer",
 });
 
@@ -78,8 +78,9 @@ pub struct RobustFundamental<T: Real> {
 /// Bounded by [`RobustConfig::most_samples`], and stopped before that by [`RobustConfig::miss_probability`].
 /// A sample has three candidates at most. Each costs n distances at most, of which a bad one needs a few; one
 /// that is nearly as good as the best is refined, by eight passes over 300 correspondences at most and n
-/// distances; one that is on a plane too tries pairs of what is off it, 800 at most, of 128 distances each.
-/// So a sample costs no more than 40 n + 310 000 distances, usually some dozens, and the end of the search
+/// distances; one that is on a plane too tries pairs of what is off it, 800 at most, of 128 distances each,
+/// and is refined once more.
+/// So a sample costs no more than 40 n + 322 000 distances, usually some dozens, and the end of the search
 /// once more as much; the number of samples is what counts. With the share w of right matches it is about
 /// `7 / w^7` for a miss of 0.1 %: 85 for w = 0.7, 4 300 for 0.4, where 10 000 are drawn below 0.35.
 ///

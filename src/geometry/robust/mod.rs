@@ -11,8 +11,8 @@
 //! * `fundamental`, `essential`: F by samples of seven, and E of known cameras by samples of five.
 //! * `reprojection`, `resection`: the pose from landmarks (PnP).
 //!
-//! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is a few hundred
-//! bytes.
+//! Every loop is bounded, nothing is allocated; what is held besides the caller's slices is some kilobytes of
+//! stack.
 
 mod config;
 mod random;

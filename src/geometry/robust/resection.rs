@@ -20,7 +20,7 @@ pub enum RobustResectionError {
     TooFew,
     /// A number is infinite or not a number.
     NotFinite,
-    /// The threshold is not greater than zero, or not a number.
+    /// The threshold is not greater than zero, or not finite.
     Threshold,
     /// The probability of a miss is not between zero and one.
     MissProbability,
@@ -35,7 +35,7 @@ pub enum RobustResectionError {
 error_text!(RobustResectionError {
     Self::TooFew => "a pose needs four landmarks",
     Self::NotFinite => "a coordinate is not finite",
-    Self::Threshold => "the threshold must be greater than zero",
+    Self::Threshold => "the threshold must be greater than zero and finite",
     Self::MissProbability => "the probability of a miss must be between zero and one",
     Self::NoSamples => "one sample at least is needed",
     Self::Inliers(needed) => "the inliers need a slice of {needed}",
@@ -51,7 +51,7 @@ pub struct RobustResection<T: Real> {
     pub pose: Pose<T>,
     /// The covariance of the pose to first order, if the inliers' coordinates have the deviation
     /// [`Self::rms_px`]: a rotation (radians) and a step, both along the camera's axes,
-    /// `P = R exp([w]x) (P' + d) + t`. Infinite where the landmarks leave the pose open.
+    /// `P = R exp([w]x) (P' + d) + t`. Very large where the landmarks leave the pose open.
     pub covariance: Matrix6<T>,
     /// How many landmarks are within the threshold.
     pub inliers: usize,
@@ -74,7 +74,7 @@ const LAST: usize = 12;
 /// landmarks by least squares with weights that fall to zero at one and a half thresholds, as in
 /// [`robust_fundamental`](crate::geometry::robust::robust_fundamental). Bounded by
 /// [`RobustConfig::most_samples`], each sample by four passes over the landmarks, each best one by four more;
-/// [`RobustConfig::sampling`] does not count here.
+/// [`RobustConfig::sampling`] is ignored here.
 pub fn robust_resection<T: Real>(
     landmarks: &[Landmark<T>],
     camera: &Camera<T>,
@@ -122,7 +122,7 @@ fn check<T: Real>(
         Err(RobustResectionError::TooFew)
     } else if inliers < landmarks.len() {
         Err(RobustResectionError::Inliers(landmarks.len()))
-    } else if !(config.threshold_px > T::ZERO) {
+    } else if !(config.threshold_px > T::ZERO && config.threshold_px.is_finite()) {
         Err(RobustResectionError::Threshold)
     } else if !(config.miss_probability > T::ZERO && config.miss_probability < T::ONE) {
         Err(RobustResectionError::MissProbability)
@@ -225,7 +225,14 @@ mod tests {
         assert_eq!([3, 4].map(|n| checked(n, config, n)), [Err(RobustResectionError::TooFew), Ok(())]);
         let refused = Err(RobustResectionError::Inliers(5));
         assert_eq!([4, 5, 6].map(|room| checked(5, config, room)), [refused, Ok(()), Ok(())]);
-        for (threshold_px, is_one) in [(-1.0, false), (0.0, false), (1e-300, true), (f64::NAN, false)] {
+        for (threshold_px, is_one) in [
+            (-1.0, false),
+            (0.0, false),
+            (1e-300, true),
+            (f64::MAX, true),
+            (f64::INFINITY, false),
+            (f64::NAN, false),
+        ] {
             assert_eq!(checked(5, RobustConfig::new(threshold_px), 5).is_ok(), is_one, "{threshold_px}");
         }
         for (miss_probability, is_one) in [(0.0, false), (1e-9, true), (0.999, true), (1.0, false)] {

@@ -143,7 +143,7 @@ fn outside_of_the_lens_model_is_refused() {
     // x (1 - 0.3 x^2) is at most 0.7027, at x = 1.054.
     assert!(camera.unproject(&Point2::new(320.0 + 350.0, 240.0)).is_ok());
     assert_eq!(camera.unproject(&Point2::new(320.0 + 352.0, 240.0)), Err(ProjectionError::NotConverged));
-    assert_eq!(camera.unproject(&Point2::new(f64::NAN, 240.0)), Err(ProjectionError::NotConverged));
+    assert_eq!(camera.unproject(&Point2::new(f64::NAN, 240.0)), Err(ProjectionError::NotFinite));
 }
 
 /// Where `cv2.projectPoints` and `cv2.fisheye.projectPoints` (OpenCV 5.0.0) see three points.

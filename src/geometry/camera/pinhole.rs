@@ -164,15 +164,17 @@ impl<T: Real> Camera<T> {
 
     /// The ray of a pixel: the direction `(x, y, 1)` in the camera's frame of all that is seen there.
     ///
-    /// Exact without distortion; with it, to a thousandth of a pixel or ten roundings of the column,
-    /// whichever is more.
+    /// Exact without distortion; with it, to 5e-11 px in `f64` and ten roundings of `f (1 + |x|)` in `f32`,
+    /// for fx near fy.
     #[inline(never)]
     pub fn unproject(&self, pixel: &Point2<T>) -> Result<Vector3<T>, ProjectionError> {
         let y = (pixel.y - self.cy) / self.fy;
         let x = (pixel.x - self.cx - self.skew * y) / self.fx;
+        if !(x.is_finite() && y.is_finite()) {
+            return Err(ProjectionError::NotFinite);
+        }
         if self.lens.is_none() {
-            let is_finite = x.is_finite() && y.is_finite();
-            return if is_finite { Ok(Vector3::new(x, y, T::ONE)) } else { Err(ProjectionError::NotFinite) };
+            return Ok(Vector3::new(x, y, T::ONE));
         }
         let rounding = T::EPSILON * T::of(10.0) * (T::ONE + x.abs().max(y.abs()));
         let tolerance = rounding.max(T::EPSILON.sqrt() * T::of(3e-3) / self.fx.max(self.fy));

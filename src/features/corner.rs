@@ -7,7 +7,7 @@
 pub struct Corner {
     /// The column of the strongest pixel.
     pub column: u16,
-    /// Row of the nearest pixel.
+    /// The row of the strongest pixel.
     pub row: u16,
     /// How far the corner lies to the right of that pixel's centre, 1/64 px; -112 to 112.
     pub right: i8,

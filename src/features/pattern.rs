@@ -10,10 +10,11 @@ pub const PAIRS: usize = 256;
 /// other.
 pub type PointPair = [[i8; 2]; 2];
 
-/// The pairs. All their coordinates are drawn independently from a sum of three even distributions of -7 to 7
-/// px (of deviation 7.5 px, about half the radius: the geometry G II of Calonder, Lepetit, Strecha & Fua,
-/// "BRIEF", ECCV 2010); a pair is drawn again when a point is outside of the circle or both points are nearer
-/// to each other than 3 px, which the smoothing makes alike.
+/// The pairs. All their coordinates are drawn independently from a sum of three uniform distributions of -7
+/// to 7 px, nearly the Gaussian one of the geometry G II of Calonder, Lepetit, Strecha & Fua ("BRIEF", ECCV
+/// 2010); a pair is drawn again when a point is outside of the circle or both points are nearer to each other
+/// than 3 px, which the smoothing makes alike. The standard deviation of a coordinate is 7.5 px as drawn, and
+/// 6.5 px of those that are kept.
 pub const PATTERN: [PointPair; PAIRS] = {
     let mut pattern = [[[0; 2]; 2]; PAIRS];
     let mut state = SEED;
@@ -43,10 +44,10 @@ const fn draw(state: u64) -> (i32, u64) {
     z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     z ^= z >> 31;
-    (even(z) + even(z >> 16) + even(z >> 32) - 21, state)
+    (uniform(z) + uniform(z >> 16) + uniform(z >> 32) - 21, state)
 }
 
 /// One of 0 to 14, from 16 random bits.
-const fn even(bits: u64) -> i32 {
+const fn uniform(bits: u64) -> i32 {
     (((bits & 0xffff) * 15) >> 16) as i32
 }

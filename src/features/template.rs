@@ -43,7 +43,7 @@ pub struct TemplateMatch {
     /// The row, px.
     pub y_px: f32,
     /// How alike the pixels are, whatever their brightness and contrast: the correlation coefficient, 1 at
-    /// most.
+    /// most, at the place before the last step.
     pub correlation: f32,
 }
 
@@ -117,9 +117,9 @@ impl Template {
     /// px.
     ///
     /// The inverse compositional algorithm (Baker & Matthews 2004): Gauss-Newton with the template's
-    /// gradients, at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and
-    /// farther than `farthest_px` from the start, of which less than 0, and what is no
-    /// number, is 0.
+    /// gradients, at most ten steps. Refused where the pixels hold no corner, at the picture's edge, and more
+    /// than `farthest_px` from the start; a negative or NaN `farthest_px` counts as 0. After ten steps the
+    /// last place is returned, converged or not, with the correlation before the last step.
     pub fn align(
         &self,
         picture: &Picture<'_>,

@@ -16,7 +16,7 @@ pub struct FocusConfig {
     /// A cell's sharpness is that of the window of `4 r + 1` by `4 r + 1` cells around it, nearer ones
     /// counting more: sums over `2 r + 1` by `2 r + 1`, twice.
     pub radius: u8,
-    /// Frames differ in exposure: each one's sharpness counts in proportion to its mean brightness.
+    /// Whether each frame's sharpness is divided by its mean brightness, for frames of different exposures.
     pub exposure_varies: bool,
 }
 

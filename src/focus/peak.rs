@@ -60,8 +60,8 @@ pub struct FocusPeak {
     pub sigma_q8: u32,
     /// What noise has part in it, in 1/256 frame: what an average over neighbours makes smaller.
     pub noise_q8: u32,
-    /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is how many times its sharpness is
-    /// twice the geometric mean of all frames'.
+    /// How far the peak stands out: `h / (h + 1)` in 1/255, where `h` is the base-2 logarithm of its
+    /// sharpness over the geometric mean of all frames'.
     pub confidence: u8,
 }
 

@@ -64,7 +64,7 @@ impl<const W: usize> RegionSharpness<W> {
         })
     }
 
-    /// The mean of the measure over the region of the lines so far, in 1/4096 grey level: at most 26 bits.
+    /// The mean of the measure over the region of the lines so far, in 1/4096 grey level: at most 22 bits.
     pub fn sharpness(&self) -> u32 {
         (self.sum * 256).checked_div(self.pixels).unwrap_or(0) as u32
     }

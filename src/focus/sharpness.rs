@@ -22,7 +22,7 @@ pub enum Measure {
     /// The sum of squared gradients (Krotkov 1987): 101 959 200.
     Tenengrad,
     /// `n` times the sum of squares of the Laplacian less the square of its sum: `n^2` times its variance
-    /// (Pech-Pacheco et al. 2000), 2 498 040 000.
+    /// (Pech-Pacheco et al. 2000), 2 496 960 000.
     LaplacianVariance,
 }
 

@@ -8,9 +8,9 @@ const MOST: u32 = 51;
 const DEVIATIONS: u32 = 2;
 
 /// The answer of one cell among those of windows of several sizes, the narrowest first: that of the first
-/// window in which noise moves the peak by less than a fifth of a frame, in the second by two fifths, and so
-/// on, for each wider one averages more of the surface. Without one, it is the answer of the widest window
-/// that has any; `answers` that is empty is [`NoFocus::Untextured`].
+/// window in which noise moves the peak by less than a fifth of a frame, and by twice as much for each wider
+/// one, which averages more of the surface. Without one, it is the answer of the widest window that has any;
+/// `answers` that is empty is [`NoFocus::Untextured`].
 ///
 /// From the third on, a window counts only as far as its answer is within two deviations of the one before:
 /// where it is farther away than noise explains, the surface is too steep for it. The narrowest one, of few

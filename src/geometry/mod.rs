@@ -1,8 +1,8 @@
 //! Camera models, two-view geometry, absolute pose, robust estimation and rectification, without pixels.
 //!
 //! In: calibrated numbers, and correspondences that somebody found. Out: types that have checked them once,
-//! so that nobody after them has to. All of it is generic over [`Real`], `f32` or `f64`, on fixed-size
-//! nalgebra types, bounded in time and without allocation.
+//! so that nobody after them has to. All of it is generic over [`Real`], `f32` or `f64`, but for
+//! [`RectifiedRig`], which is `f32`; on fixed-size nalgebra types, bounded in time and without allocation.
 //!
 //! The modules stand in the order of use: each one uses only what stands above it.
 //!
@@ -19,7 +19,7 @@
 //! What comes out is finite, whatever goes in: an `Ok` or a `Some` holds no infinity and nothing that is not
 //! a number, and keeps what its type promises (a rotation is one, a direction has length one, a depth is in
 //! front). Where a number would go beyond what `T` holds, some 1e19 where it is squared in `f32` and 1e154 in
-//! `f64`, the answer is an error, `NotFinite` where there is that name, or `None`.
+//! `f64`, the answer is an error or `None`.
 //!
 //! R and t carry a point of camera 2 into camera 1, `P = R P' + t`, and `p^T F p' = 0`; what OpenCV writes
 //! the other way round is converted by functions that say so.

@@ -3,7 +3,8 @@
 use crate::math::{atan, atan_f64};
 use nalgebra::RealField;
 
-/// `f32` or `f64`: what every type of [`geometry`](crate::geometry) is generic over.
+/// `f32` or `f64`: what every type of [`geometry`](crate::geometry) is generic over, but for
+/// [`RectifiedRig`](crate::geometry::camera::RectifiedRig), which is `f32`.
 ///
 /// `f32` is what the cores have hardware for; each function whose result needs more says so with a figure.
 /// Roots and angles come from nalgebra's [`RealField`]. Sealed: no other type implements it.

@@ -11,8 +11,8 @@ use nalgebra::{Matrix3, Point2, Vector3};
 
 /// How a camera stands in a building, from lines along its three orthogonal directions.
 ///
-/// Lines have no sense: of the 24 orientations that fit them as well it is the one that is nearest to what
-/// the caller expects.
+/// Lines have no sense: of the four orientations that fit them equally well it is the one nearest to what the
+/// caller expects.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

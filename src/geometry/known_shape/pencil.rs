@@ -64,9 +64,9 @@ impl<T: Real> LineSegment<T> {
 }
 
 impl<T: Real> Scaled<T> {
-    /// What the distance of an end from the line through the middle and `v` is the product of with `v`, while
-    /// `v` moves little: `half x middle` over the length of that line's normal. Zero where the segment or
-    /// the line is none.
+    /// The vector g for which `g . v` is the distance of an end from the line through the middle and `v`:
+    /// `half x middle` over the length of that line's normal, held fixed while `v` moves little. Zero where
+    /// that line is undetermined.
     pub(super) fn gradient(&self, v: &Vector3<T>) -> Vector3<T> {
         let size = self.middle.cross(v).xy().norm();
         if size > T::ZERO { self.half.cross(&self.middle) / size } else { Vector3::zeros() }

@@ -33,8 +33,7 @@ pub struct MarkPose<T: Real> {
 
 /// The poses that a picture of a mark may mean.
 ///
-/// A small or distant square has nearly the same picture when it is tilted the other way about its line of
-/// ray.
+/// A small or distant square looks nearly the same when it is tilted the other way about its line of sight.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]

@@ -8,9 +8,9 @@ use crate::geometry::Real;
 pub(crate) struct NormalEquations<T, const N: usize> {
     /// The left side A, the information of the N numbers.
     pub(crate) matrix: [[T; N]; N],
-    /// The right side b, downhill.
+    /// The right side b: the negative gradient of half the cost.
     pub(crate) right: [T; N],
-    /// What is made least.
+    /// The cost that is minimised.
     pub(crate) cost: T,
 }
 

@@ -23,7 +23,7 @@ pub(crate) fn rows3<T>([a, b, c, d, e, f, g, h, i]: [T; 9]) -> [[T; 3]; 3] {
     [[a, b, c], [d, e, f], [g, h, i]]
 }
 
-/// `A B`: nalgebra's own, in a small program once.
+/// `A B`, compiled once for all callers so that small programs hold one copy.
 #[inline(never)]
 pub(crate) fn product<T: Real>(a: &Matrix3<T>, b: &Matrix3<T>) -> Matrix3<T> {
     a * b

@@ -2,7 +2,7 @@
 
 /// The highest degree.
 const DEGREE: usize = 10;
-/// Steps for each root: half of them would halve an interval to rounding.
+/// Largest number of steps for each root; so many halvings alone bring an interval of length 2 below 2e-18.
 const STEPS: usize = 60;
 
 /// The real roots of `c[0] + c[1] x + ... + c[10] x^10`, and how many there are; a double root counts once or

@@ -70,7 +70,7 @@ error_text!(RowMeterError {
     Self::Empty => "no frame was added",
 });
 
-/// How the second camera stands, as far as rows show.
+/// Small rotation of the second camera, estimated from row differences, with its standard deviations.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -89,8 +89,8 @@ pub struct RowAlignment<T: Real> {
 pub enum RowHealth {
     /// Under a quarter of a pixel: nothing that matching would show.
     Good,
-    /// Up to half a pixel. Half a row off, the block methods miss two fifths more answers and the methods
-    /// along paths a third more (the README's table of altered pairs): correct the remap.
+    /// Up to half a pixel. Half a row off, all methods miss over two fifths more answers
+    /// (docs/performance.md, altered images): correct the remap.
     Worn,
     /// More: answers are lost, and those that are left are worse. Correct the remap, and calibrate anew.
     Bad,

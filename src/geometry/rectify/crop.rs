@@ -30,7 +30,7 @@ struct Rectangle<T> {
 ///
 /// The focal length is the mean of both across the baseline; the principal point puts the middle of the four
 /// corners in the middle of the image, on average. Then the focal length is scaled as [`Crop`] has it,
-/// between the least with which all of both images is seen and the least with which nothing else is (OpenCV's
+/// between the largest at which all of both images is seen and the least at which nothing else is (OpenCV's
 /// alpha).
 pub(super) fn shared_camera<T: Real>(
     rotated: &[Rotated<'_, T>; 2],

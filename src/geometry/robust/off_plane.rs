@@ -1,7 +1,7 @@
 //! What lies off a plane, and whether it agrees on an epipole or only seems to (a contrario; Moisan & Stival
 //! 2004).
 
-use super::plane::Plane;
+use super::plane::PlaneHomography;
 use crate::geometry::Real;
 use crate::geometry::two_view::Correspondence;
 use nalgebra::{Matrix3, Point2, Vector3};
@@ -30,8 +30,8 @@ pub(super) struct OffPlanes<'a, T: Real> {
     points: heapless::Vec<OffPlane<'a, T>, MOST>,
     /// The squared distance from the plane from which on a correspondence is off it, px^2.
     least_px2: T,
-    /// Twice the squared distance from its epipolar line at which a correspondence still agrees, px^2: half
-    /// of an offset in one image is Sampson's distance.
+    /// Squared distance from its epipolar line in the first image up to which a correspondence agrees, px^2:
+    /// twice Sampson's squared distance.
     agreeing_px2: T,
     /// Counts of all, without those that agree with an estimate.
     all: Octaves<T>,
@@ -111,13 +111,18 @@ impl<T: Real> Octaves<T> {
     }
 }
 
-/// What evidence has to be over the logarithm of how many estimates were tried.
+/// Margin, in nats, by which the evidence must exceed the logarithm of the number of pairs tried.
 const SURE: f64 = 7.0;
 
 impl<'a, T: Real> OffPlanes<'a, T> {
     /// What is farther from the plane than `least_px2` px squared; up to `agreeing_px2` from a line agrees.
     #[inline(never)]
-    pub(super) fn of(plane: &Plane<T>, seen: &'a [Correspondence<T>], least_px2: T, agreeing_px2: T) -> Self {
+    pub(super) fn of(
+        plane: &PlaneHomography<T>,
+        seen: &'a [Correspondence<T>],
+        least_px2: T,
+        agreeing_px2: T,
+    ) -> Self {
         let mut list = Self { points: heapless::Vec::new(), least_px2, agreeing_px2, all: Octaves::NONE };
         let off = |s: &&Correspondence<T>| plane.distance_squared_px2(s) > least_px2;
         let every = seen.iter().filter(off).count().div_ceil(MOST).max(1);
@@ -170,7 +175,7 @@ impl<'a, T: Real> OffPlanes<'a, T> {
 #[inline(never)]
 pub(super) fn agreeing_with<T: Real>(
     f: &Matrix3<T>,
-    plane: &Plane<T>,
+    plane: &PlaneHomography<T>,
     seen: &[Correspondence<T>],
     least_px2: T,
     width_px2: T,
@@ -198,19 +203,22 @@ mod tests {
     use core::f64::consts::FRAC_2_PI;
 
     /// A plane far away that both images show at the same places, for cameras with that epipole.
-    fn far_away(epipole: &Vector3<f64>) -> Plane<f64> {
+    fn far_away(epipole: &Vector3<f64>) -> PlaneHomography<f64> {
         let at = |x: f64, y: f64| Correspondence::new(x, y, x, y);
-        Plane::through(&skew(epipole), [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)]).expect("an epipole")
+        PlaneHomography::through(&skew(epipole), [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)])
+            .expect("an epipole")
     }
 
     /// Cameras side by side: all numbers of its plane are whole.
-    fn beside() -> (Vector3<f64>, Plane<f64>) {
+    fn beside() -> (Vector3<f64>, PlaneHomography<f64>) {
         (Vector3::x(), far_away(&Vector3::x()))
     }
 
     /// A camera that has moved towards what is seen at (300, -200), and matches with parallaxes along their
     /// lines and up to so many px across them.
-    fn forwards<const N: usize>(across: f64) -> (Vector3<f64>, Plane<f64>, [Correspondence<f64>; N]) {
+    fn forwards<const N: usize>(
+        across: f64,
+    ) -> (Vector3<f64>, PlaneHomography<f64>, [Correspondence<f64>; N]) {
         let epipole = Vector3::new(300.0, -200.0, 1.0);
         let seen = core::array::from_fn(|i| {
             let on = Point2::new((i * 37 % 11) as f64 * 20.0, (i * 53 % 13) as f64 * 15.0);

@@ -1,7 +1,7 @@
 //! Plane and parallax: from a dominant plane to the rest of the scene (Chum, Werner & Matas 2005).
 
 use super::off_plane::{Octaves, OffPlanes, agreeing_with};
-use super::plane::Plane;
+use super::plane::PlaneHomography;
 use super::search::{ENOUGH, MINIMUM, Search};
 use super::sprt::sampson;
 use crate::geometry::Real;
@@ -28,7 +28,7 @@ impl<T: Real> Search<'_, T, MINIMUM> {
 
     /// The best of the estimates that a plane gives with two correspondences off it, if it is better than the
     /// best so far.
-    pub(super) fn leave(&mut self, plane: &Plane<T>) {
+    pub(super) fn leave(&mut self, plane: &PlaneHomography<T>) {
         let plane = self.fitted(plane);
         if let Some(f) = self.with_parallax(&plane) {
             self.improve(&f);
@@ -36,7 +36,7 @@ impl<T: Real> Search<'_, T, MINIMUM> {
     }
 
     /// The plane by all that is on it.
-    fn fitted(&self, plane: &Plane<T>) -> Plane<T> {
+    fn fitted(&self, plane: &PlaneHomography<T>) -> PlaneHomography<T> {
         let px2 = self.on_plane_px2();
         let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
         let (plane, _) = plane.fitted(self.seen, &self.frames, px2);
@@ -45,7 +45,7 @@ impl<T: Real> Search<'_, T, MINIMUM> {
 
     /// `F = [e]x H` (px) with the epipole e that what is off the plane H says is the most probable, of those
     /// of pairs: as many as it takes for a pair that agrees, [`PAIRS`] at most.
-    fn with_parallax(&mut self, plane: &Plane<T>) -> Option<Matrix3<T>> {
+    fn with_parallax(&mut self, plane: &PlaneHomography<T>) -> Option<Matrix3<T>> {
         let px2 = self.on_plane_px2();
         // An epipole of two leaves the others wider off than one that is fitted to all.
         let off = OffPlanes::of(plane, self.seen, px2, px2 * T::of(2.0));
@@ -72,13 +72,13 @@ impl<T: Real> Search<'_, T, MINIMUM> {
 
     /// Tries whether most inliers of the best estimate are on one plane, and if so, completes it by what is
     /// off it; the plane, when what agrees off it may well do so by chance.
-    pub(super) fn only_plane(&mut self) -> Option<Plane<T>> {
+    pub(super) fn only_plane(&mut self) -> Option<PlaneHomography<T>> {
         let px2 = self.on_plane_px2();
         let f = self.in_pixels(&self.best?.matrix());
         let (mut plane, mut most, every) = (None, 0, self.seen.len() / ENOUGH);
         for _ in 0..TRIPLETS {
             let [Some(a), Some(b), Some(c)] = [(); 3].map(|()| self.agreeing(&f)) else { continue };
-            let Some(candidate) = Plane::through(&f, [a, b, c]) else { continue };
+            let Some(candidate) = PlaneHomography::through(&f, [a, b, c]) else { continue };
             let count = candidate.count(self.seen, every, px2);
             if count > most {
                 (plane, most) = (Some(candidate), count);
@@ -105,7 +105,7 @@ impl<T: Real> Search<'_, T, MINIMUM> {
 
     /// What is off a plane beside an estimate (px), within the width of the loss or within half of it, as the
     /// noise is: what says more.
-    fn beside(&self, plane: &Plane<T>, f: &Matrix3<T>) -> Octaves<T> {
+    fn beside(&self, plane: &PlaneHomography<T>, f: &Matrix3<T>) -> Octaves<T> {
         let within = |width_px2: T| agreeing_with(f, plane, self.seen, self.on_plane_px2(), width_px2);
         let (wide, narrow) = (within(self.loss.width_squared), within(self.loss.width_squared * T::of(0.25)));
         if narrow.evidence() > wide.evidence() { narrow } else { wide }
@@ -166,9 +166,10 @@ mod tests {
         })
     }
 
-    fn plane() -> Plane<f64> {
+    fn plane() -> PlaneHomography<f64> {
         let (_, epipole) = wall();
-        Plane::through(&fundamental(&epipole), [0, 1, 2].map(|i| seen(i, 0.0, 0.0))).expect("an epipole")
+        PlaneHomography::through(&fundamental(&epipole), [0, 1, 2].map(|i| seen(i, 0.0, 0.0)))
+            .expect("an epipole")
     }
 
     fn search(seen: &[Correspondence<f64>]) -> Search<'_, f64, MINIMUM> {

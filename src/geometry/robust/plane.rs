@@ -14,14 +14,14 @@ use nalgebra::{Matrix3, Point2, Vector3};
 /// Triplets of a sample of seven: any five of the seven hold one of them.
 const TRIPLETS: [[usize; 3]; 5] = [[0, 1, 2], [3, 4, 5], [0, 1, 6], [3, 4, 6], [2, 5, 6]];
 
-/// A homography before its inverse, px.
+/// The homography of a plane from the second image to the first, px, and its adjugate for the way back.
 #[derive(Clone, Copy)]
-pub(super) struct Plane<T: Real> {
+pub(super) struct PlaneHomography<T: Real> {
     pub(super) matrix: Matrix3<T>,
     adjugate: Matrix3<T>,
 }
 
-impl<T: Real> Plane<T> {
+impl<T: Real> PlaneHomography<T> {
     fn new(matrix: Matrix3<T>) -> Self {
         let [a, b, c] = columns3(&matrix);
         let rows = [b.cross(&c), c.cross(&a), a.cross(&b)].map(|row| row.transpose());
@@ -166,7 +166,7 @@ mod tests {
         // The first image as it is, and half as large.
         for (scale, i) in [1.0, 0.5].into_iter().flat_map(|scale| (0..9).map(move |i| (scale, i))) {
             let h = Matrix3::from_diagonal(&Vector3::new(scale, scale, 1.0)) * wall().0;
-            let (plane, back) = (Plane::new(h), h.try_inverse().expect("of rank three"));
+            let (plane, back) = (PlaneHomography::new(h), h.try_inverse().expect("of rank three"));
             let mut s = seen(i, (i as f64 - 4.5) * 3.0);
             s.first.coords *= scale;
             let both = [to(&h, s.second, s.first), to(&back, s.first, s.second)];
@@ -183,7 +183,7 @@ mod tests {
         // Cameras side by side and a plane far away, which both show at the same places.
         let at = |x: f64, y: f64| Correspondence::new(x, y, x, y);
         let three = [at(0.0, 0.0), at(10.0, 0.0), at(0.0, 10.0)];
-        let plane = Plane::through(&skew(&Vector3::x()), three).expect("an epipole");
+        let plane = PlaneHomography::through(&skew(&Vector3::x()), three).expect("an epipole");
         for (x, y) in [(2.0, 0.0), (0.0, -2.0)] {
             let s = Correspondence::new(5.0 + x, 3.0 + y, 5.0, 3.0);
             assert_eq!(plane.distance_squared_px2(&s), 4.0);
@@ -193,12 +193,13 @@ mod tests {
 
     #[test]
     fn three_matches_and_f_have_their_plane() {
-        let plane = Plane::through(&fundamental(), [0, 1, 2].map(|i| seen(i, 0.0))).expect("an epipole");
+        let plane =
+            PlaneHomography::through(&fundamental(), [0, 1, 2].map(|i| seen(i, 0.0))).expect("an epipole");
         for i in 0..11 {
             let squared = plane.distance_squared_px2(&seen(i, 0.0));
             assert!(squared < 1e-12, "{i}: {squared}");
         }
-        assert!(Plane::through(&Matrix3::zeros(), [0, 1, 2].map(|i| seen(i, 0.0))).is_none());
+        assert!(PlaneHomography::through(&Matrix3::zeros(), [0, 1, 2].map(|i| seen(i, 0.0))).is_none());
     }
 
     #[test]
@@ -209,7 +210,7 @@ mod tests {
                     seen(i, if places.contains(&i) { 20.0 + 9.0 * i as f64 } else { 0.0 })
                 })
             };
-            let plane = |places: &[usize]| Plane::of_sample(&fundamental(), &off(places), 0.01);
+            let plane = |places: &[usize]| PlaneHomography::of_sample(&fundamental(), &off(places), 0.01);
             let found = plane(&[one, two]).expect("five are on it");
             assert!(found.distance_squared_px2(&seen(9, 0.0)) < 1e-9, "{one} {two}");
             let three = (0..7).find(|i| ![one, two].contains(i)).expect("another");
@@ -229,11 +230,12 @@ mod tests {
         let all: [_; 12] = core::array::from_fn(|i| if i < 9 { near(i) } else { seen(i, 90.0) });
         let frames = Frame::of_points(&all).expect("points that are apart");
         let (h, _) = wall();
-        let plane = Plane::new(h);
+        let plane = PlaneHomography::new(h);
         let (fitted, count) = plane.fitted(&all, &frames, 4.0);
         assert_eq!([plane.count(&all, 1, 4.0), plane.count(&all, 5, 4.0), count], [9, 2, 9]);
-        let squares =
-            |plane: &Plane<f64>| all[..9].iter().map(|s| plane.distance_squared_px2(s)).sum::<f64>();
+        let squares = |plane: &PlaneHomography<f64>| {
+            all[..9].iter().map(|s| plane.distance_squared_px2(s)).sum::<f64>()
+        };
         assert!(squares(&fitted) < 0.9 * squares(&plane), "{} {}", squares(&fitted), squares(&plane));
         // Four are no more than determine it: it stays.
         let (same, count) = plane.fitted(&all[5..], &frames, 4.0);

@@ -3,7 +3,7 @@
 use super::config::Sampling;
 use super::random::Random;
 
-/// After how many samples the set of [`Sampling::Ordered`] would be as likely drawn as one of all.
+/// Number of samples after which PROSAC draws as uniform RANSAC does: T_N of Chum & Matas (2005).
 const GROWN: f32 = 10_000.0;
 
 /// Draws samples of K observations: of all, or of a set of the first ones that grows (Chum & Matas 2005,
@@ -15,7 +15,7 @@ pub(super) struct Sampler<const K: usize> {
     size: usize,
     /// Expected number, of `GROWN` samples of all observations, that lie in the sampling pool.
     inside: f32,
-    /// With how many samples drawn the set grows.
+    /// Number of samples after which PROSAC enlarges its sampling pool (Chum & Matas 2005, eq. 3).
     due: u32,
 }
 

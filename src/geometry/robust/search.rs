@@ -4,7 +4,7 @@ use super::config::RobustConfig;
 use super::factored::Factored;
 use super::frame::Frame;
 use super::loss::Biweight;
-use super::plane::{Plane, one_sense};
+use super::plane::{PlaneHomography, one_sense};
 use super::prosac::Sampler;
 use super::ransac::Estimator;
 use super::refine::{Matrix, refine};
@@ -180,7 +180,7 @@ impl<T: Real> Estimator<MINIMUM> for Search<'_, T, MINIMUM> {
         if !one_sense(&f, &sample) || !self.compare(&f) {
             return;
         }
-        if let Some(plane) = Plane::of_sample(&f, &sample, self.on_plane_px2()) {
+        if let Some(plane) = PlaneHomography::of_sample(&f, &sample, self.on_plane_px2()) {
             self.leave(&plane);
         }
     }

@@ -96,7 +96,7 @@ impl<T: Real> Homography<T> {
 /// the criterion, which takes parameters for known, calls it general. With the exact deviation it does so of
 /// one plane in four with 12 correspondences, of one in five with 20, and of none of 300 with 100.
 ///
-/// The error is that of the eight-point algorithm, when there is no homography either.
+/// The error is that of the eight-point algorithm, but for `Plane` where there is a homography.
 pub fn choose<T: Real>(seen: &[Correspondence<T>], sigma_px: T) -> Result<ModelChoice<T>, EightPointError> {
     let homography = Homography::from_correspondences(seen);
     let homography_gric = homography.map(|h| h.gric(seen, sigma_px)).ok();

@@ -74,8 +74,8 @@ struct Rays<T: Real> {
 const MOST_STEPS: usize = 10;
 
 impl<T: Real> TwoViews<T> {
-    /// Refuses rays that meet at less than a milliradian, 0.06 degrees; [`Self::with_min_angle`] moves
-    /// that.
+    /// Two cameras and the pose of the second beside the first. Rays that meet at less than a milliradian
+    /// (0.06 degrees) are refused; [`Self::with_min_angle`] changes that.
     pub fn new(first: Camera<T>, second: Camera<T>, pose: Pose<T>) -> Result<Self, EssentialError> {
         let essential = Essential::from_pose(&pose)?;
         let fundamental = Fundamental::from_essential(&essential, &first, &second);

@@ -36,7 +36,7 @@ pub(super) fn cost<V: View<T, N>, T: Real, const N: usize>(problem: &Problem<'_,
 
 /// Fills the reduced matrix and its right side, the points eliminated: for every point with the views i and
 /// j, `S_ij = U_ij - W_i V^-1 W_j^T` and `b_i = -(g_i - W_i V^-1 g_p)` (Triggs et al. 2000, 6.1; Brown 1958),
-/// where U and V have been damped. Hands each point's terms, `W_i L^-T` with `V = L L^T`, to `each`.
+/// where U and V have been damped.
 pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
     problem: &Problem<'_, V, T>,
     workspace: &mut BundleWorkspaceView<'_, V, T, N>,

@@ -93,7 +93,7 @@ pub struct OdometryConfig {
 }
 
 impl OdometryConfig {
-    /// Nothing is asked. All zeros.
+    /// The configuration of an odometry that was not started: all zeros.
     pub(super) const NONE: Self = Self {
         far_px: 0.0,
         near_px: 0.0,

@@ -16,7 +16,7 @@ pub struct Frame<'a> {
     pub features: &'a [Feature],
 }
 
-/// A frame with all that its parts are asked with.
+/// A frame with its rig, its configuration and its number, as the stages of the odometry take it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Moment<'a, T: Real> {
     pub rig: &'a OdometryRig<T>,

@@ -35,11 +35,11 @@ impl<T: Real> InversePoint<T> {
         Self { at: Vector3::new(o, o, o), covariance: Matrix3::new(o, o, o, o, o, o, o, o, o) }
     };
 
-    /// A point of unknown depth on this ray: its inverse depth is `usual`, and uncertain by as much.
-    pub fn of_unknown_depth(ray: &Vector3<T>, usual: T, sigma: T) -> Self {
-        let variance = sigma * sigma;
-        let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, usual * usual));
-        Self { at: Vector3::new(ray.x, ray.y, usual), covariance }
+    /// A point of unknown depth on this ray: its inverse depth is `usual_inverse`, and uncertain by as much.
+    pub fn of_unknown_depth(ray: &Vector3<T>, usual_inverse: T, sigma: T) -> Self {
+        let (variance, of_depth) = (sigma * sigma, usual_inverse * usual_inverse);
+        let covariance = Matrix3::from_diagonal(&Vector3::new(variance, variance, of_depth));
+        Self { at: Vector3::new(ray.x, ray.y, usual_inverse), covariance }
     }
 
     /// The point as if it were at infinity.

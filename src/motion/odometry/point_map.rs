@@ -118,7 +118,7 @@ impl<T: Real> PointMap<'_, T> {
 
     /// Makes points of features that are far enough from all others, as long as there is space.
     pub fn add_new(&mut self, now: &Moment<'_, T>) {
-        let usual = self.usual_depth().unwrap_or(T::of(0.1));
+        let usual_inverse = self.usual_inverse_depth().unwrap_or(T::of(0.1));
         let features = now.frame.features;
         let count = features.len();
         // From all over the picture, for there may not be room for all: steps near the golden ratio.
@@ -136,14 +136,14 @@ impl<T: Real> PointMap<'_, T> {
                 continue;
             }
             let Some(track) = self.tracks.iter_mut().find(|track| !track.used) else { break };
-            if let Some(fresh) = new_track(now, feature, usual) {
+            if let Some(fresh) = new_track(now, feature, usual_inverse) {
                 *track = Track { lives: track.lives.wrapping_add(1), ..fresh };
             }
         }
     }
 
     /// The median of the inverse depths that are known.
-    fn usual_depth(&self) -> Option<T> {
+    fn usual_inverse_depth(&self) -> Option<T> {
         // By halves of a range, for there is nowhere to sort.
         let deep = || {
             self.tracks.iter().filter(|track| track.used && track.is_deep(0.3)).map(|track| track.point.at.z)
@@ -167,14 +167,14 @@ impl<T: Real> PointMap<'_, T> {
 }
 
 /// A new point: of a pair with the depth that the right picture says, of one camera of unknown depth.
-fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual: T) -> Option<Track<T>> {
+fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual_inverse: T) -> Option<Track<T>> {
     let (rig, frame, sigma) = (now.rig, now.frame, now.sigma());
     let pixel = [feature.x_px, feature.y_px];
     let template = Template::cut(&frame.left, pixel[0], pixel[1]).ok()?;
     let observation =
         rig.camera.unproject(&Point2::new(T::of(pixel[0].into()), T::of(pixel[1].into()))).ok()?;
     let point = match rig.right {
-        None => InversePoint::of_unknown_depth(&observation, usual, sigma),
+        None => InversePoint::of_unknown_depth(&observation, usual_inverse, sigma),
         Some((baseline, right_cx)) => {
             let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
             let here = pixel[0] + offset;

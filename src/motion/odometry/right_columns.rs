@@ -2,8 +2,8 @@
 
 use crate::geometry::Real;
 
-/// How the right camera of a pair differs from its calibration along the rows. Of two numbers that stand
-/// beside each other in memory each is small, and their sum is what a disparity in the middle is off by.
+/// How the right camera of a pair differs from its calibration along the rows. A disparity in the middle is
+/// off by `principal - yaw` focal lengths.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct RightColumns<T: Real> {

@@ -10,7 +10,7 @@ use super::frame::Moment;
 use super::pose_estimate::PointMatch;
 use super::right_columns::RightColumns;
 use super::track::Track;
-use super::two_views::TwoViews;
+use super::two_views::PairOfViews;
 use crate::geometry::linear::{NormalEquations, inverse_information, levenberg_marquardt};
 use crate::geometry::{Real, camera::Pose};
 use nalgebra::Vector3;
@@ -153,7 +153,7 @@ impl<T: Real> SelfCalibration<T> {
         if rig.right.is_none() {
             return;
         }
-        let pair = TwoViews {
+        let pair = PairOfViews {
             tracks: &*tracks,
             matches,
             baseline: rig.baseline(),
@@ -206,7 +206,7 @@ impl<T: Real> SelfCalibration<T> {
     }
 
     /// One step of the filter.
-    fn measure(&mut self, pair: &TwoViews<'_, T>) {
+    fn measure(&mut self, pair: &PairOfViews<'_, T>) {
         for (i, row) in self.covariance.iter_mut().enumerate() {
             row.iter_mut().skip(i).take(1).for_each(|x| *x += T::of(DRIFT * DRIFT));
         }

@@ -11,8 +11,8 @@ use nalgebra::Matrix6;
 pub enum State {
     /// The first frame: the others stand beside it.
     First,
-    /// One camera has no unit of length yet, for what was seen so far shows nothing but a rotation.
-    /// The motion is that rotation; the next frame that is [`State::Tracked`] has the
+    /// One camera has no unit of length yet: what it saw is more than a rotation, but two views give no sure
+    /// relative pose. The motion is not known, and is none; the next frame that is [`State::Tracked`] has the
     /// whole motion since.
     Waiting,
     /// The pose is measured.
@@ -29,8 +29,9 @@ pub enum State {
     /// The rotation is measured. A step is too small to be measured: of one camera it has no direction. The
     /// motion has none.
     RotationOnly,
-    /// The turn is measured. What is seen is too far away to tell a step by, or there is too little of it:
-    /// the step is not known, and the motion has none. So is a camera told that stands before what is far.
+    /// The rotation is measured, the translation is not: what is seen is too far away, or there is too little
+    /// of it. The motion has no translation. A camera that stands still before a distant scene is in this
+    /// state.
     TranslationUnknown,
     /// Too little was found again: the motion is not known, and is none. The next frame that is
     /// [`State::Found`] has the whole motion since.

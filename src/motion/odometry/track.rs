@@ -11,13 +11,12 @@ pub struct Track<T: Real> {
     pub(super) point: InversePoint<T>,
     /// The pixels, as they were when the template was cut.
     pub(super) template: Template,
-    /// Carries ways from the place in the template's picture into ways in the last picture.
+    /// Affine warp of offsets from the point: from the template's picture into the last picture.
     pub(super) warp: [[f32; 2]; 2],
     pub(super) descriptor: Descriptor,
     /// Where it was seen last, px.
     pub(super) pixel: [f32; 2],
-    /// Where it is seen in this frame, if it is, and the correlation of the pixels; refilled with each
-    /// frame.
+    /// Where this frame sees it, px; `None` where it does not. Set anew by each frame.
     pub(super) now: Option<[f32; 2]>,
     /// How alike its pixels were.
     pub(super) correlation: f32,

@@ -18,8 +18,9 @@ use crate::geometry::{
 };
 use nalgebra::{Point2, Point3, Vector3};
 
-/// The bits that the best feature may differ in, and of the second best the percent.
+/// Largest Hamming distance accepted between a track's descriptor and a feature's.
 const MOST_DIFFERENT: u16 = 72;
+/// Largest ratio of the best distance to the second best, percent (Lowe 2004).
 const RATIO_PERCENT: u32 = 85;
 /// A second best is another corner if it lies so far away, px.
 const APART_PX: f32 = 4.0;

@@ -11,7 +11,7 @@ use crate::geometry::{Real, camera::Pose};
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// Points that two views of a pair see, from the view that they are anchored in to that of the matches.
-pub(super) struct TwoViews<'a, T: Real> {
+pub(super) struct PairOfViews<'a, T: Real> {
     pub tracks: &'a [Track<T>],
     pub matches: &'a [PointMatch<T>],
     pub baseline: T,
@@ -26,7 +26,7 @@ pub(super) struct TwoViews<'a, T: Real> {
 /// columns.
 type Residual<T> = (Vector3<T>, SMatrix<T, 3, 6>, SMatrix<T, 3, 2>);
 
-impl<T: Real> TwoViews<'_, T> {
+impl<T: Real> PairOfViews<'_, T> {
     /// What the two views see of the points that both see in both pictures.
     pub fn common(&self) -> impl Iterator<Item = (Vector3<T>, &PointObservation<T>)> {
         self.matches.iter().filter(|found| found.observation.in_right).filter_map(|found| {
@@ -117,7 +117,7 @@ impl<T: Real> TwoViews<'_, T> {
     }
 }
 
-impl<T: Real> LeastSquares<T, 8> for TwoViews<'_, T> {
+impl<T: Real> LeastSquares<T, 8> for PairOfViews<'_, T> {
     type Estimate = (Pose<T>, RightColumns<T>);
 
     const FIRST_DAMPING: f64 = 1e-6;

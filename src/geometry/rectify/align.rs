@@ -3,7 +3,7 @@
 use super::config::{Axis, RectifyError};
 use crate::geometry::Real;
 use crate::geometry::camera::Pose;
-use crate::geometry::linear::skew;
+use crate::geometry::linear::{cayley, skew};
 use nalgebra::{Matrix3, Vector3};
 
 /// Rotations of the first and of the second camera into their shared frame, whose X (or Y) is along the
@@ -39,13 +39,8 @@ fn half_of<T: Real>(r: &Matrix3<T>) -> Result<Matrix3<T>, RectifyError> {
         return Err(RectifyError::Apart);
     }
     let w = (T::ONE + r.trace()).sqrt() * T::of(0.5);
-    let by = T::of(0.25) / w;
-    let v = Vector3::new(r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12) * by;
-    let length = ((w + T::ONE) * (w + T::ONE) + v.norm_squared()).sqrt();
-    let (w, v) = ((w + T::ONE) / length, v / length);
-    let cross = skew(&v);
-    let two = T::of(2.0);
-    Ok(Matrix3::identity() + cross * (two * w) + cross * cross * two)
+    let axis = Vector3::new(r.m32 - r.m23, r.m13 - r.m31, r.m21 - r.m12);
+    Ok(cayley(&(axis * (T::of(0.5) / (w * (w + T::ONE))))))
 }
 
 /// The smallest rotation of a unit vector to another that is not opposite (Rodrigues, without an

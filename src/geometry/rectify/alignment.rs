@@ -5,9 +5,9 @@ use super::rectification::Rectification;
 use super::warp::Warp;
 use crate::geometry::Real;
 use crate::geometry::camera::{Camera, ImageSize};
-use crate::geometry::linear::{Ldl, all_finite};
+use crate::geometry::linear::{Ldl, all_finite, cayley};
 use crate::geometry::two_view::Correspondence;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
 
 /// Gathers correspondences of rectified images, frame by frame, and estimates by what rotation the second
 /// camera was rotated since it was calibrated.
@@ -259,21 +259,10 @@ impl<T: Real> Rectification<T> {
     pub fn corrected(&self, found: &RowAlignment<T>) -> Self {
         let [first, second] = self.warps();
         let back = -Vector3::from(found.rotation_rad);
-        let rotation = quaternion_rotation(&back) * second.rotation();
+        let rotation = cayley(&back) * second.rotation();
         let second = Warp::new(*second.camera(), second.raw_size(), rotation, *self.camera(), self.size());
         self.with_warps([*first, second])
     }
-}
-
-/// The rotation by a small vector w, as the unit quaternion along `(1, w / 2)` has it: its angle is `2
-/// atan(|w| / 2)`, 1e-5 off at 3 degrees.
-fn quaternion_rotation<T: Real>(w: &Vector3<T>) -> Matrix3<T> {
-    let half = w * T::of(0.5);
-    let length = (T::ONE + half.norm_squared()).sqrt();
-    let (w, v) = (T::ONE / length, half / length);
-    let cross = crate::geometry::linear::skew(&v);
-    let two = T::of(2.0);
-    Matrix3::identity() + cross * (two * w) + cross * cross * two
 }
 
 #[cfg(test)]
@@ -286,7 +275,7 @@ mod tests {
         // (0.5, 0.2, 1) + w x it, of w = (0.01, 0, 0.02): (0.496, 0.2, 1.002).
         let [x, _, z] = row_moves(&camera, 50.0, 20.0);
         assert!((0.01 * x + 0.02 * z - (100.0 * 0.2 / 1.002 - 20.0)).abs() < 2e-2);
-        let rotation = quaternion_rotation(&Vector3::new(0.01, 0.0, 0.02));
+        let rotation = cayley(&Vector3::new(0.01, 0.0, 0.02));
         let moved = rotation * Vector3::new(0.5, 0.2, 1.0);
         assert!((moved - Vector3::new(0.496, 0.2, 1.002)).amax() < 3e-4);
     }

@@ -1,7 +1,7 @@
 //! Covariances of views and points (Hartley & Zisserman 2004, A6.4).
 
 use super::envelope::Envelope;
-use super::gauge::{Freedom, Gauge};
+use super::gauge::Gauge;
 use super::loss::Loss;
 use super::point_equations::{Linear, PointEquations, add_term};
 use super::problem::{BundleError, Problem, prepare, tracks};
@@ -87,12 +87,6 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
         Envelope { slots: slots.get_mut(..views).unwrap_or(&mut []), blocks }
     }
 
-    fn freedom(&self, view: u16) -> Freedom<T> {
-        let pose = |at: u16| self.problem.views.get(usize::from(at)).map(|view| *view.pose());
-        let Some(own) = pose(view) else { return Freedom::None };
-        self.gauge.freedom(view, &own, |at| pose(at).unwrap_or(own))
-    }
-
     /// Solves the reduced equations for what `fill` writes into the right side.
     fn solve(&mut self, fill: impl FnOnce(&mut Envelope<'_, V, T, N>)) {
         let mut reduced = self.envelope();
@@ -105,7 +99,7 @@ impl<'a, V: View<T, N>, T: Real, const N: usize> Covariances<'a, V, T, N> {
     /// The covariance of a view's step, rows and columns in its order: turn in radians, centre in the scene's
     /// unit, lens. Zeros for a view that there is not.
     pub fn view(&mut self, view: u16) -> [[T; N]; N] {
-        let freedom = self.freedom(view);
+        let freedom = self.problem.freedom(&self.gauge, view);
         let (at, variance) = (usize::from(view), self.variance);
         let mut covariance = [[T::ZERO; N]; N];
         for (k, row) in covariance.iter_mut().enumerate() {

@@ -32,8 +32,7 @@ impl<T: Real, const N: usize> Linear<T, N> {
         let mut by_view = jacobian.by_view;
         let (u, v) = (jacobian.pixel.x - observation.pixel.x, jacobian.pixel.y - observation.pixel.y);
         let (mut residual, mut by_point) = ([u, v], jacobian.by_point);
-        let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
-        let freedom = gauge.freedom(observation.view, view.pose(), other);
+        let freedom = problem.freedom(gauge, observation.view);
         if freedom != Freedom::All {
             by_view.iter_mut().for_each(|row| freedom.restrict(row));
         }

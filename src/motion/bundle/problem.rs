@@ -1,6 +1,6 @@
 //! The bundle adjustment problem: views, points and observations.
 
-use super::gauge::Gauge;
+use super::gauge::{Freedom, Gauge};
 use super::view::View;
 use super::workspace::{BundleWorkspaceView, ViewSlot};
 use crate::geometry::Real;
@@ -133,6 +133,16 @@ impl<V, T: Real> Problem<'_, V, T> {
             }
         }
         Ok(())
+    }
+
+    /// What the gauge lets view `at` do.
+    pub(super) fn freedom<const N: usize>(&self, gauge: &Gauge, at: u16) -> Freedom<T>
+    where
+        V: View<T, N>,
+    {
+        let pose = |at: u16| self.views.get(usize::from(at)).map(|view| *view.pose());
+        let Some(own) = pose(at) else { return Freedom::None };
+        gauge.freedom(at, &own, |other| pose(other).unwrap_or(own))
     }
 }
 

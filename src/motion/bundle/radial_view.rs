@@ -5,7 +5,7 @@ use crate::geometry::{
     Real,
     camera::{Pose, ProjectionError},
 };
-use nalgebra::{Matrix3, Point2, Point3, Vector3};
+use nalgebra::{Point2, Point3, Vector3};
 
 /// A camera with square pixels, the origin of pixels at its centre, and a lens `q = 1 + k1 r^2 + k2 r^4`
 /// (Agarwal et al. 2010, "Bundle Adjustment in the Large"): `(u, v) = f q (x, y)`, `(x, y) = (X / Z, Y / Z)`.
@@ -29,11 +29,7 @@ pub struct RadialView<T: Real> {
 }
 
 impl<T: Real> View<T, 9> for RadialView<T> {
-    const EMPTY: Self = {
-        let o = T::ZERO;
-        let pose = Pose::of_parts(Matrix3::new(o, o, o, o, o, o, o, o, o), Vector3::new(o, o, o));
-        Self { pose, focal_px: o, k1: o, k2: o }
-    };
+    const EMPTY: Self = Self { pose: Pose::NOTHING, focal_px: T::ZERO, k1: T::ZERO, k2: T::ZERO };
 
     fn pose(&self) -> &Pose<T> {
         &self.pose

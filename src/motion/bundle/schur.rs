@@ -63,9 +63,8 @@ pub(super) fn reduce<V: View<T, N>, T: Real, const N: usize>(
         let factor = point.factor(damping);
         eliminate(&mut reduced, terms.get_mut(..used).unwrap_or(&mut []), &factor, &point.gradient);
     }
-    for (at, view) in (0..).zip(problem.views.iter()) {
-        let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
-        let freedom = gauge.freedom(at, view.pose(), other);
+    for (at, _) in (0..).zip(problem.views.iter()) {
+        let freedom = problem.freedom(gauge, at);
         let Some(slot) = reduced.slots.get_mut(usize::from(at)) else { return };
         for (step, &gradient) in slot.step.iter_mut().zip(&slot.gradient) {
             *step -= gradient;
@@ -156,8 +155,7 @@ pub(super) fn propose<V: View<T, N>, T: Real, const N: usize>(
     let mut promise =
         |x: T, gradient: T, diagonal: T| predicted += half * x * (damping * damper(diagonal) * x - gradient);
     for (at, (view, slot)) in (0..).zip(problem.views.iter().zip(reduced.slots.iter_mut())) {
-        let other = |at: u16| problem.views.get(usize::from(at)).map_or(*view.pose(), |other| *other.pose());
-        let freedom = gauge.freedom(at, view.pose(), other);
+        let freedom = problem.freedom(gauge, at);
         let trial = view.moved(&slot.step);
         slot.trial = match freedom {
             // To the bit where it was.

@@ -38,6 +38,9 @@ pub(crate) trait LeastSquares<T: Real, const N: usize> {
     /// The damping of the first step, as a share of the diagonal; zero for Gauss-Newton.
     const FIRST_DAMPING: f64 = 1e-4;
 
+    /// Added to every damped element of the diagonal, so that a direction without information takes no step.
+    const DIAGONAL_FLOOR: f64 = 0.0;
+
     /// The normal equations about an estimate; `None` where it has no cost. The search may end as soon as the
     /// cost is known not to be below `bound`.
     fn equations(&self, at: &Self::Estimate, bound: Option<T>) -> Option<NormalEquations<T, N>>;
@@ -50,11 +53,6 @@ pub(crate) trait LeastSquares<T: Real, const N: usize> {
 
     /// The estimate after a step of the N numbers.
     fn moved(&self, from: &Self::Estimate, step: &[T; N]) -> Self::Estimate;
-
-    /// An element of the diagonal with its damping.
-    fn damped(&self, diagonal: T, damping: T) -> T {
-        diagonal * (T::ONE + damping)
-    }
 
     /// Whether a step that changes the cost so is taken.
     fn is_better(&self, before: T, after: T) -> bool {
@@ -91,7 +89,7 @@ pub(crate) fn levenberg_marquardt<T: Real, P: LeastSquares<T, N>, const N: usize
         let mut matrix = equations.matrix;
         for (i, row) in matrix.iter_mut().enumerate() {
             if let Some(diagonal) = row.get_mut(i) {
-                *diagonal = problem.damped(*diagonal, damping);
+                *diagonal += *diagonal * damping + T::of(P::DIAGONAL_FLOOR);
             }
         }
         let step = Ldl::new(&mut matrix).solve(&equations.right);

@@ -32,9 +32,6 @@ struct SampsonLoss<'a, T: Real> {
     every: usize,
 }
 
-/// Steps at most.
-const MOST_STEPS: usize = 20;
-
 /// The estimate near `start` with the least loss of Sampson's distances, by Levenberg-Marquardt, `steps` at
 /// most. Of the correspondences every `every`th is used.
 ///
@@ -49,8 +46,8 @@ pub(super) fn refine<T: Real>(
     loss: Biweight<T>,
     (every, steps): (usize, usize),
 ) -> Factored<T> {
-    let problem = SampsonLoss { kind, seen, frames, loss, every: every.max(1) };
-    levenberg_marquardt(&problem, start, steps.min(MOST_STEPS)).map_or(start, |(best, _)| best)
+    let problem = SampsonLoss { kind, seen, frames, loss, every };
+    levenberg_marquardt(&problem, start, steps).map_or(start, |(best, _)| best)
 }
 
 /// A correspondence beside an estimate, in the frames.
@@ -148,10 +145,6 @@ impl<T: Real> LeastSquares<T, FREE> for SampsonLoss<'_, T> {
 
     fn moved(&self, from: &Factored<T>, step: &[T; FREE]) -> Factored<T> {
         from.moved(step)
-    }
-
-    fn damped(&self, diagonal: T, damping: T) -> T {
-        diagonal + diagonal * damping
     }
 
     fn is_better(&self, before: T, after: T) -> bool {
@@ -315,8 +308,6 @@ mod tests {
         let problem = SampsonLoss { kind: Matrix::Fundamental, seen: &seen, frames: &frames, loss, every: 1 };
         assert!(problem.is_better(-3.0, -3.5) && !problem.is_better(-3.0, -3.0));
         assert!(!problem.is_better(-3.0, -2.5));
-        // The damping is a share of the diagonal's element.
-        assert_eq!(problem.damped(8.0, 0.25), 10.0);
         // A tenth after each step, a millionth at least; sixteen times as much after one that is none.
         assert!((problem.after_taken(0.5) - 0.05).abs() < 1e-15 && problem.after_taken(2e-6) == 1e-6);
         assert_eq!(problem.after_refused(0.5, &along(3, -0.1)), Some(8.0));

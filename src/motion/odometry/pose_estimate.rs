@@ -172,6 +172,7 @@ impl<T: Real> LeastSquares<T, 6> for Descent<'_, T> {
     type Estimate = Pose<T>;
 
     const FIRST_DAMPING: f64 = 1e-6;
+    const DIAGONAL_FLOOR: f64 = 1e-3;
 
     fn equations(&self, pose: &Pose<T>, _bound: Option<T>) -> Option<NormalEquations<T, 6>> {
         let (Solved { information: mut matrix, cost, .. }, mut right) =
@@ -189,11 +190,6 @@ impl<T: Real> LeastSquares<T, 6> for Descent<'_, T> {
 
     fn moved(&self, from: &Pose<T>, step: &[T; 6]) -> Pose<T> {
         from.moved(step)
-    }
-
-    fn damped(&self, diagonal: T, damping: T) -> T {
-        // A direction of which nothing is said stays as it is.
-        diagonal + (diagonal * damping + T::of(1e-3))
     }
 
     fn is_better(&self, before: T, after: T) -> bool {

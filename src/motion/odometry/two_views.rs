@@ -121,6 +121,7 @@ impl<T: Real> LeastSquares<T, 8> for PairOfViews<'_, T> {
     type Estimate = (Pose<T>, RightColumns<T>);
 
     const FIRST_DAMPING: f64 = 1e-6;
+    const DIAGONAL_FLOOR: f64 = 1e-3;
 
     fn equations(
         &self,
@@ -138,10 +139,5 @@ impl<T: Real> LeastSquares<T, 8> for PairOfViews<'_, T> {
         &[a, b, c, x, y, z, principal, yaw]: &[T; 8],
     ) -> Self::Estimate {
         (pose.moved(&[a, b, c, x, y, z]), columns.plus(&RightColumns { principal, yaw }))
-    }
-
-    fn damped(&self, diagonal: T, damping: T) -> T {
-        // A direction of which nothing is said stays as it is.
-        diagonal + (diagonal * damping + T::of(1e-3))
     }
 }

@@ -202,7 +202,7 @@ impl Autofocus {
 
     fn set_out(&mut self, position: u16) {
         self.target = position;
-        self.is_above = self.limits.backlash > 0 && self.at >= position && self.at != position;
+        self.is_above = self.limits.backlash > 0 && self.at > position;
         self.travel();
     }
 

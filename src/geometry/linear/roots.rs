@@ -78,7 +78,7 @@ fn root_between(coefficients: &[f64; DEGREE + 1], mut low: f64, mut high: f64) -
     if last == 0.0 {
         return Some(high);
     }
-    if !(first * last < 0.0 || (first < 0.0) != (last < 0.0)) || !first.is_finite() || !last.is_finite() {
+    if (first < 0.0) == (last < 0.0) || !first.is_finite() || !last.is_finite() {
         return None;
     }
     let mut x = 0.5 * (low + high);

@@ -37,3 +37,4 @@ pub use essential::{RobustEssential, robust_essential};
 pub use fundamental::{RobustError, RobustFundamental, robust_fundamental};
 pub(crate) use loss::weight_and_gain;
 pub use resection::{RobustResection, RobustResectionError, robust_resection};
+pub(crate) use search::stride;

@@ -191,7 +191,7 @@ impl<T: Real> Estimator<MINIMUM> for Search<'_, T, MINIMUM> {
 }
 
 /// A step near the golden ratio of `n` that meets all numbers below `n` before it meets one again.
-fn stride(n: usize) -> usize {
+pub(crate) fn stride(n: usize) -> usize {
     let start = (n as u64 * 159 / 257) as usize;
     (start.max(1)..n).find(|&stride| common_divisor(stride, n) == 1).unwrap_or(1)
 }

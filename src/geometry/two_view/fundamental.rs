@@ -45,7 +45,7 @@ impl<T: Real> Fundamental<T> {
     /// The singular matrix that is nearest to `matrix`, after rows and columns were brought to one size:
     /// pixels and the homogeneous one differ by orders of magnitude, and so do the elements of F.
     pub fn from_matrix(matrix: &Matrix3<T>) -> Result<Self, FundamentalError> {
-        if !matrix.amax().is_finite() || !matrix.iter().all(|x| x.is_finite()) {
+        if !matrix.iter().all(|x| x.is_finite()) {
             return Err(FundamentalError::NotFinite);
         }
         let balanced = Balanced::new(matrix).ok_or(FundamentalError::Rank)?;

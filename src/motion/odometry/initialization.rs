@@ -66,9 +66,8 @@ pub(super) fn initialize<T: Real>(
         let state = if no_turn && scale < T::of(2.0) { State::Stationary } else { State::RotationOnly };
         report_rotation(motion, &rotated, state, shown)
     } else {
-        let wide = Problem { matches: &tracker.matches, baseline: T::ZERO, doubt: T::ZERO };
-        let (rig, seed) = (now.rig, now.config.seed);
-        if let Some(pose) = two_views(rig, &wide, &rotated.pose, seed, tracker.inliers, correspondences) {
+        let (matches, turn, seed) = (&tracker.matches, &rotated.pose, now.config.seed);
+        if let Some(pose) = two_views(now.rig, matches, turn, seed, tracker.inliers, correspondences) {
             return set_unit(now, map, tracker, motion, &pose, shown);
         }
         shown
@@ -171,7 +170,7 @@ fn restart<T: Real>(
 /// of each match: one list of all, one of the inliers.
 fn two_views<T: Real>(
     rig: &OdometryRig<T>,
-    problem: &Problem<'_, T>,
+    matches: &[PointMatch<T>],
     turn: &Pose<T>,
     seed: u64,
     inliers: &mut [bool],
@@ -184,7 +183,7 @@ fn two_views<T: Real>(
     let (mut all_len, mut inlying_len) = (0, 0);
     let mut seen = List { places: all, len: &mut all_len };
     let mut off = T::ZERO;
-    for point_match in problem.matches {
+    for point_match in matches {
         let (a, b) = (point_match.point.at * focal, point_match.observation.at * focal);
         seen.push(Correspondence::new(a.x, a.y, b.x, b.y));
         if let Some(moved) = point_match.point.moved(turn) {
@@ -207,9 +206,9 @@ fn two_views<T: Real>(
             let mut on_plane = List { places: inlying, len: &mut inlying_len };
             kept().for_each(|s| on_plane.push(s));
             let homography = Homography::from_correspondences(&on_plane).ok()?;
-            let motions = homography.recover_motions(kept(), &pinhole, &pinhole).ok()?;
             // Two motions may have all points in front: only one that is alone is sure.
-            let [(first, votes), (_, others)] = motions.first_chunk::<2>().copied()?;
+            let [(first, votes), (_, others)] =
+                homography.recover_motions(kept(), &pinhole, &pinhole).ok()?;
             if votes == others {
                 return None;
             }

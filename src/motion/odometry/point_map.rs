@@ -6,7 +6,7 @@ use super::inverse_depth::InversePoint;
 use super::pose_estimate::{PointMatch, Problem, WIDTH};
 use super::track::{Track, product};
 use crate::features::{Feature, Template};
-use crate::geometry::{Real, camera::Pose};
+use crate::geometry::{Real, camera::Pose, robust::stride};
 use nalgebra::{Matrix3, Matrix6, Point2, Point3, Vector3};
 
 /// Frames in which a point is missed, or disagrees, before it is dropped.
@@ -15,9 +15,6 @@ const WRONG: u8 = 2;
 /// Templates are cut anew when they look so much larger or smaller, or so little like they did.
 const GROWN: [f32; 2] = [0.6, 1.6];
 const LEAST_CORRELATION: f32 = 0.9;
-/// The share of a step's covariance that each point's own is widened by: errors of the pose are in all of
-/// them.
-const DOUBT: f64 = 1.0;
 /// Largest ratio, of the best place along a row to any other, of what a correlation lacks to 1.
 const CLEAR: f32 = 0.8;
 
@@ -73,7 +70,6 @@ impl<T: Real> PointMap<'_, T> {
                 }
             }
         }
-        let doubt = of_pose * T::of(DOUBT);
         let (fx, fy) = rig.camera.focal_px();
         let ratio = (fx / fy).to_f64() as f32;
         for track in self.tracks.iter_mut().filter(|track| track.used) {
@@ -81,7 +77,7 @@ impl<T: Real> PointMap<'_, T> {
                 track.used = false;
                 continue;
             };
-            let Some(point) = track.point.carried(pose, &doubt) else { continue };
+            let Some(point) = track.point.carried(pose, of_pose) else { continue };
             track.point = point;
             let of = |x: T| x.to_f64() as f32;
             let by = &moved.by_point;
@@ -208,16 +204,4 @@ fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual_inverse: T) 
         used: true,
         ..Track::EMPTY
     })
-}
-
-/// A step that meets all numbers below `n` before it meets one again.
-fn stride(n: usize) -> usize {
-    let start = (n as u64 * 159 / 257).max(1) as usize;
-    let common = |mut a: usize, mut b: usize| {
-        while b != 0 {
-            (a, b) = (b, a % b);
-        }
-        a
-    };
-    (start..n).find(|&step| common(step, n) == 1).unwrap_or(1)
 }

@@ -8,7 +8,7 @@ use super::workspace::StructureWorkspaceView;
 use crate::geometry::{
     Real,
     absolute::Landmark,
-    camera::{Camera, Pose},
+    camera::{Camera, Lens, Pose},
     robust::{RobustConfig, robust_resection},
     two_view::Correspondence,
 };
@@ -95,8 +95,8 @@ fn place<T: Real>(memory: &mut StructureWorkspaceView<'_, T>, at: u16, pose: Pos
 
 /// The camera without its lens.
 fn pinhole<T: Real>(camera: &Camera<T>) -> Camera<T> {
-    // Of a camera that is one: its matrix is another's.
-    Camera::from_matrix(&camera.matrix()).unwrap_or(*camera)
+    // No lens is always one.
+    camera.with_distortion(Lens::NONE).unwrap_or(*camera)
 }
 
 /// A view's observation without its lens.

@@ -14,10 +14,11 @@ where
     /// How many rows above the line that goes in the winners lie that go in with it.
     pub const WINNERS_ABOVE: usize = S::RADIUS_Y;
 
-    /// Whether the checks that were configured look at the left image: for texture or for edges.
+    /// Whether the checks that were configured look at the left image: for texture, for edges, or along paths
+    /// for patterns that repeat.
     pub fn needs_lines(&self) -> bool {
         let checks = &self.config().checks;
-        checks.texture_pixels > 0 || checks.look_for_edges()
+        checks.texture_pixels > 0 || checks.look_for_edges() || (S::ALONG_PATHS && checks.refuse_repeats)
     }
 
     /// Whether the checks that were configured look at the [second best](WinnerRecord::second).

@@ -7,7 +7,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use stereopsis::imaging::LineWindow;
 use stereopsis::matching::{
-    Block, Config, External, Fast, MatchError, Matcher, Method, Row, Sgm, SgmEdge, SgmLean, WinnerRecord,
+    Block, Checks, Config, External, Fast, MatchError, Matcher, Method, Row, Sgm, SgmEdge, SgmLean,
+    WinnerRecord,
 };
 use stereopsis_model::scene::pattern::Pattern;
 use stereopsis_model::twin::Answers;
@@ -96,6 +97,23 @@ proptest! {
             prop_assert!(differs.is_none(), "{pattern:?}: {}", differs.unwrap_or_default());
         }
     }
+}
+
+#[test]
+fn patterns_that_repeat_are_looked_for_in_the_left_image() {
+    let checks = Checks { refuse_repeats: true, ..Checks::DENSE };
+    let squares =
+        GrayImage::from_fn(120, 30, |x, y| image::Luma([if (x / 6 + y / 6) % 2 == 1 { 180 } else { 60 }]));
+    let config = Config { checks, ..Config::for_method::<Sgm>(120, 30, 32) };
+    assert_eq!(compare::<Sgm>(&config, &(squares.clone(), squares)), None);
+    let mut matcher = Box::new(Rest::<Sgm>::new());
+    matcher.start(&config).expect("a configuration that fits");
+    assert!(matcher.needs_lines());
+    assert_eq!(matcher.push_winners(None, &[]), Err(MatchError::LineTooShort { needed: 120 }));
+    // The methods over a window do not look for them.
+    let mut matcher = Box::new(Rest::<Block>::new());
+    matcher.start(&Config { checks, ..Config::for_method::<Block>(120, 30, 32) }).expect("it fits");
+    assert!(!matcher.needs_lines());
 }
 
 #[test]

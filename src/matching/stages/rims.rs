@@ -49,7 +49,7 @@ pub(super) fn refuse_rims<S: MethodParameters>(frame: &mut Frame<'_>, newest: us
 }
 
 /// What the first answer of a row is compared with: none is nearer, so that it begins no surface.
-const FIRST: i32 = i16::MAX as i32;
+const FIRST: i32 = u16::MAX as i32;
 /// Columns that are looked at together.
 const GROUP: usize = 16;
 
@@ -110,8 +110,9 @@ impl Row<'_> {
         let (Some(before), Some(here), Some(edges)) = (before, here, edges) else { return false };
         let mut begins = false;
         for i in 0..GROUP {
-            let [before, here] = [before, here].map(|row| row[i].get().raw() as i16);
-            let is_nearer = here > before.saturating_add(FatteningWork::TOLERANCE as i16);
+            // No answer is 0, and every other one more.
+            let [before, here] = [before, here].map(|row| row[i].get().raw().wrapping_add(1));
+            let is_nearer = here > before.saturating_add(FatteningWork::TOLERANCE);
             begins |= is_nearer & (edges[i] & self.bit == 0);
         }
         !begins
@@ -190,7 +191,7 @@ impl Row<'_> {
 /// An answer as a number. No answer is less than any: -1.
 #[inline(always)]
 fn number(answer: &Cell<Disparity>) -> i32 {
-    i32::from(answer.get().raw() as i16)
+    i32::from(answer.get().raw().wrapping_add(1)) - 1
 }
 
 /// What an answer behind this one has to be nearer than to begin a surface.
@@ -234,19 +235,23 @@ mod tests {
 
     #[test]
     fn a_near_surface_begins_and_ends_at_its_edge() {
-        // Far, nothing, near from the seventh column on.
-        let row: [u16; WIDTH] = core::array::from_fn(|x| match x {
-            0..4 => 320,
-            4..6 => NONE,
-            _ => 640,
-        });
-        let mut mirrored = row;
-        mirrored.reverse();
-        // The column of the only edge, and how many answers are refused.
-        for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
-            check(&row, &[edge], rims(0..60, RIGHT), 6..6 + refused);
-            check(&mirrored, &[59 - edge], rims(0..60, LEFT), 54 - refused..54);
-            check(&row, &[edge], rims(0..60, LEFT), 0..0);
+        // Up to the largest disparities that there are.
+        for least in [0, 32_500, 40_000, 65_214] {
+            // Far, nothing, near from the seventh column on.
+            let row: [u16; WIDTH] = core::array::from_fn(|x| match x {
+                0..4 => least,
+                4..6 => NONE,
+                _ => least + 320,
+            });
+            let mut mirrored = row;
+            mirrored.reverse();
+            // The column of the only edge, and how many answers are refused.
+            for (edge, refused) in [(3, 0), (4, 0), (6, 0), (7, 1), (9, 3), (38, 32), (39, 0)] {
+                check(&row, &[edge], rims(0..60, RIGHT), 6..6 + refused);
+                check(&row, &[edge], |row| row.refuse_all(), 6..6 + refused);
+                check(&mirrored, &[59 - edge], rims(0..60, LEFT), 54 - refused..54);
+                check(&row, &[edge], rims(0..60, LEFT), 0..0);
+            }
         }
     }
 

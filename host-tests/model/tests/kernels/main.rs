@@ -3,12 +3,13 @@
 //!
 //! * `list`: all sizes, ranges, pictures and checks; `pictures`: every kind of picture. `repeats`: patterns
 //!   that repeat. `any`: any combination of them. `penalties`: those at the bounds.
-//! * `frames`: one frame after the other, faults and changes in between. `moved`: a matcher that changes its
-//!   place. `external`: rows of winners from outside.
+//! * `far`: the largest disparities. `frames`: one frame after the other, faults and changes in between.
+//!   `moved`: a matcher that changes its place. `external`: rows of winners from outside.
 //! * `remap`: rectified lines.
 
 mod any;
 mod external;
+mod far;
 mod frames;
 mod list;
 mod moved;

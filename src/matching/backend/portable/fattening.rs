@@ -36,9 +36,9 @@ fn refuse_one(answer: &mut Disparity, flags: &mut PixelFlags, bound: &mut u32, s
     // The number of `Disparity::NONE` is over all answers: it lowers no bound to where answers are.
     let here = u32::from(answer.raw());
     if here > *bound {
-        // No answer is refused as well, which shows in no flag: it alone has the highest bit.
-        const UP: u32 = 15 - PixelFlags::UNTEXTURED.bits().trailing_zeros();
-        let flag = (!here >> UP) as u8 & PixelFlags::UNTEXTURED.bits();
+        // No answer is refused as well, which shows in no flag: one more than it alone has the 17th bit.
+        const UP: u32 = 16 - PixelFlags::UNTEXTURED.bits().trailing_zeros();
+        let flag = (!(here + 1) >> UP) as u8 & PixelFlags::UNTEXTURED.bits();
         *flags = flags.union(PixelFlags::from_bits(flag));
         *answer = Disparity::NONE;
     }

@@ -70,6 +70,29 @@ fn shown<S: Method>(kernel: Kernel, config: &Config, left: &[u8], right: &[u8]) 
     shown
 }
 
+#[test]
+fn a_search_may_begin_beyond_the_row() {
+    fn check<S: Method>(method: MethodName) {
+        let picture = Pattern::Noise.pair(WIDTH as u32, HEIGHT as u32, 4).0;
+        for min_disparity in [WIDTH as u16 - 1, WIDTH as u16, WIDTH as u16 + 9] {
+            let config = Config { min_disparity, ..method.config(WIDTH as u16, HEIGHT as u16, DISPARITIES) };
+            let twin = Stages::of(&method.twin(), &config, &picture, &picture);
+            for kernel in Kernel::available() {
+                let shown = shown::<S>(kernel, &config, picture.as_raw(), picture.as_raw());
+                let what = format!("{} {} {min_disparity}", method.name(), kernel.name());
+                assert_eq!(shown.winners.is_empty(), usize::from(min_disparity) >= WIDTH, "{what}: winners");
+                assert!(shown.subpixel == twin.subpixel, "{what}: subpixel");
+                assert!(shown.subpixel_flags == twin.flags, "{what}: flags");
+                assert!(shown.checked == twin.checked.0, "{what}: checked");
+                assert!(shown.checked_flags == twin.checked.1, "{what}: checked flags");
+            }
+        }
+    }
+    check::<Fast>(MethodName::Fast);
+    check::<Sgm>(MethodName::Sgm);
+    check::<SgmEdge>(MethodName::SgmEdge);
+}
+
 fn check<S: Method>(method: MethodName) {
     let (left, right) = Pattern::Shifted { most: 12, noise_grey: 2.0 }.pair(WIDTH as u32, HEIGHT as u32, 8);
     for (filter, confidence) in Filter::ALL.into_iter().flat_map(|filter| [(filter, false), (filter, true)]) {

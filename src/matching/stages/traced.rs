@@ -16,9 +16,11 @@ pub(super) fn winners<S: Method>(frame: &mut Frame<'_>, newest: usize, lines: Op
     if S::EXTERNAL_WINNERS {
         return;
     }
-    let (begin, in_words) = (usize::from(frame.config.min_disparity), frame.backend.has_winners_in_words());
+    let in_words = frame.backend.has_winners_in_words();
     let ForAnswers { mut winners, right, .. } = frame.workspace.for_answers();
     let width = winners.width();
+    // Left of here no pixel has a candidate.
+    let begin = usize::from(frame.config.min_disparity).min(width);
     let bytes = &*winners.bytes();
     let winner = |x: usize| {
         let at = |part: usize| if in_words { 4 * x + part } else { part * width + x };

@@ -167,7 +167,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
     /// `valid` is given the row and two masks to write, of the left and of the right image's pixels: 1 for
     /// one that was seen, 0 for another. It says whether it wrote them; without, everything was seen. An
     /// answer stays whose pixel was seen, and in the right image the pixel nearest to its partner. Else
-    /// there is none, of [`PixelFlags::OUTSIDE`] alone.
+    /// there is none, of [`PixelFlags::OUTSIDE`] alone; [`PixelFlags::DAMAGED`] stays.
     // Nothing is left of it where the source has no mask.
     #[inline]
     pub fn mask(&mut self, valid: impl FnOnce(u16, [&mut [u8]; 2]) -> bool) {

@@ -29,7 +29,7 @@ impl Masked<'_> {
 
     /// Takes away what the masks say was not seen. In the right image an answer's partner is the nearest
     /// pixel; one left of it was not seen. A withheld answer is judged as one that is there: the rows below
-    /// would be given it back.
+    /// would be given it back. Of the flags, [`PixelFlags::DAMAGED`] stays.
     pub(in crate::matching) fn take_away(self, left: &[u8], right: &[u8]) {
         const HALF: u32 = Disparity::ONE as u32 / 2;
         let (mut confidences, mut withheld) = (self.confidences.iter_mut(), self.withheld.iter());
@@ -43,7 +43,8 @@ impl Masked<'_> {
             let is_found = found != Disparity::NONE.raw();
             let is_lost = seen == 0 || (is_found && partner.is_none_or(|&seen| seen == 0));
             if is_lost {
-                (*answer, *flags) = (Disparity::NONE, PixelFlags::OUTSIDE);
+                let damaged = PixelFlags::DAMAGED.when(flags.contains(PixelFlags::DAMAGED));
+                (*answer, *flags) = (Disparity::NONE, PixelFlags::OUTSIDE.union(damaged));
                 if let Some(confidence) = confidence {
                     *confidence = 0;
                 }
@@ -68,7 +69,7 @@ mod tests {
             PixelFlags::CLEAR,
             PixelFlags::FILLED,
             PixelFlags::CEILING,
-            PixelFlags::CLEAR,
+            PixelFlags::DAMAGED,
         ];
         let mut confidences = [0, 9, 9, 9, 9];
         let row = Masked {
@@ -81,7 +82,8 @@ mod tests {
         row.take_away(&[1, 1, 1, 1, 1], &[1, 0, 1, 1, 1]);
         let outside = PixelFlags::OUTSIDE;
         assert_eq!(answers, [NONE, NONE, d(48), d(47), NONE]);
-        assert_eq!(flags, [PixelFlags::SPECKLE, outside, PixelFlags::FILLED, PixelFlags::CEILING, outside]);
+        let damaged = outside.union(PixelFlags::DAMAGED);
+        assert_eq!(flags, [PixelFlags::SPECKLE, outside, PixelFlags::FILLED, PixelFlags::CEILING, damaged]);
         assert_eq!(confidences, [0, 0, 9, 9, 0]);
         let row = Masked {
             index: 0,
@@ -92,7 +94,7 @@ mod tests {
         };
         row.take_away(&[0, 1, 1, 0, 1], &[1; 5]);
         assert_eq!(answers, [NONE, NONE, d(48), NONE, NONE]);
-        assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, outside]);
+        assert_eq!(flags, [outside, outside, PixelFlags::FILLED, outside, damaged]);
         // Withheld: 1.5 px, rounded up to the pixel that was not seen, and 1.47 px.
         let (mut answers, unsure) = ([NONE; 5], PixelFlags::AMBIGUOUS);
         let mut flags = [unsure; 5];

@@ -18,6 +18,8 @@ struct Channels<'a> {
     registers: &'a [AtomicU32; 9],
     ring: &'a [[AtomicU32; 2]],
     place: usize,
+    /// A row whose last record is written so many times more.
+    surplus: Option<(u8, usize)>,
 }
 
 impl BlockDma for Channels<'_> {
@@ -26,7 +28,11 @@ impl BlockDma for Channels<'_> {
     fn position(&mut self) -> Result<usize, Infallible> {
         let mut row = [WinnerRecord::ZERO; WIDTH];
         let given = self.block.receive(&mut row)?;
-        for record in &row[..given] {
+        let more = match (self.surplus, given) {
+            (Some((of, more)), 1..) if row[given - 1].row() == of => more,
+            _ => 0,
+        };
+        for record in row[..given].iter().chain(std::iter::repeat_n(&row[WIDTH - 1], more)) {
             let words = u64::from_le_bytes(record.bytes());
             for (to, word) in self.ring[self.place].iter().zip([words as u32, (words >> 32) as u32]) {
                 to.store(word, Ordering::Relaxed);
@@ -63,7 +69,7 @@ fn registers_in_the_address_space_and_a_ring_give_the_same_rows() {
     }
     // Rows lie over its end.
     let ring = [const { [const { AtomicU32::new(0) }; 2] }; 2 * WIDTH + 7];
-    let channels = Channels { block, registers: &registers, ring: &ring, place: 11 };
+    let channels = Channels { block, registers: &registers, ring: &ring, place: 11, surplus: None };
     let mut device = WinnerRegisters::new(MappedBlock::new(&registers, &ring, channels, 3));
     let mut pipeline = Box::new(WinnerPipeline::<Block, W, D>::new());
     pipeline.start(&config, &mut device).expect("a search that the block does");
@@ -92,5 +98,26 @@ fn registers_in_the_address_space_and_a_ring_give_the_same_rows() {
         let cut_off: Result<Rows, Failed> = Err(WinnerError::FrameCutOff.into());
         assert!(frame(&mut pipeline, &mut device, &pictures) == cut_off, "{fault:?}");
         device.bus().dma().block.faults.clear();
+    }
+    // A row of too many records is counted whole, and costs no other.
+    for (row, more) in [(20, 1), (30, 5), (HEIGHT - 1, 2)] {
+        device.bus().dma().surplus = Some((row as u8, more));
+        pipeline.set_most_lost(1);
+        let rows = frame(&mut pipeline, &mut device, &pictures).expect("one row may be lost");
+        assert_eq!(pipeline.lost(), 1, "{row}: {more} more");
+        for (y, (found, own)) in rows.iter().zip(&expected).enumerate() {
+            let is_flagged = found.1.iter().all(|flags| flags.contains(PixelFlags::DAMAGED));
+            assert_eq!(is_flagged, (row.saturating_sub(4)..=row + 10).contains(&y), "{row}: {y}");
+            assert!(is_flagged || found == own, "{row}: {y}");
+        }
+        pipeline.set_most_lost(0);
+        let counted: Result<Rows, Failed> =
+            Err(WinnerError::Count { row: row as u16, given: WIDTH + more }.into());
+        assert!(frame(&mut pipeline, &mut device, &pictures) == counted, "{row}: {more} more");
+        device.bus().dma().surplus = None;
+        assert!(
+            frame(&mut pipeline, &mut device, &pictures).expect("rows") == expected,
+            "{row}: {more} more"
+        );
     }
 }

@@ -103,28 +103,29 @@ impl<D: BlockDma> RegisterBus for MappedBlock<'_, D> {
     }
 
     // A row ends with its last pixel, or where a record of another row stands; the row of a damaged one is
-    // not known.
+    // not known. Records of the row beyond its last pixel are counted as far as they are there.
     fn receive(&mut self, winners: &mut [WinnerRecord]) -> Result<usize, D::Error> {
         let (mut count, mut row) = (0, None);
         for _ in 0..self.most_looks.max(1) {
             let end = self.dma.position()?;
             // What the channel wrote before it went on is there.
             fence(Ordering::Acquire);
-            while self.next != end {
-                let (Some(record), Some(to)) = (self.record(self.next), winners.get_mut(count)) else {
+            for _ in 0..self.ring.len() {
+                if self.next == end {
                     break;
-                };
-                if record.is_intact(record.row().into()) {
-                    if row.is_some_and(|row| row != record.row()) {
-                        return Ok(count);
-                    }
-                    row = Some(record.row());
                 }
-                *to = record;
+                let Some(record) = self.record(self.next) else { break };
+                let of = Some(record.row()).filter(|&row| record.is_intact(row.into()));
+                match winners.get_mut(count) {
+                    Some(to) if of.is_none() || row.is_none() || of == row => *to = record,
+                    None if of.is_some() && of == row => {}
+                    _ => return Ok(count),
+                }
+                row = of.or(row);
                 count += 1;
                 self.next = if self.next + 1 < self.ring.len() { self.next + 1 } else { 0 };
             }
-            if count == winners.len() {
+            if count >= winners.len() {
                 break;
             }
         }

@@ -91,8 +91,8 @@ pub trait RegisterBus {
     fn send_line(&mut self, is_first: bool, left: &[u8], right: &[u8]) -> Result<(), Self::Error>;
 
     /// Takes the records of the next row from the ring, up to the one that ends the row, and says how many
-    /// there were: 0 when none came within the bus's own limit of time. What `winners` has no room for is
-    /// dropped, and counted.
+    /// there were: 0 when none came within the bus's own limit of time. Records of the row that `winners` has
+    /// no room for are dropped, and counted.
     fn receive(&mut self, winners: &mut [WinnerRecord]) -> Result<usize, Self::Error>;
 
     /// Empties the ring.

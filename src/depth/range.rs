@@ -39,7 +39,7 @@ impl DepthScale {
     }
 }
 
-/// Largest disparity that a search can return.
+/// Disparity that no answer of a search is over: 1 px more than the largest one searched.
 pub(super) fn largest(config: &Config) -> Disparity {
     Disparity::from_pixels(config.min_disparity.saturating_add(config.disparities))
 }

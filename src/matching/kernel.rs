@@ -17,7 +17,7 @@ pub enum Kernel {
     /// The vectors of a 32-bit RISC-V core (Zve32x with Zvl128b, by `-C target-feature`).
     Rvv,
     /// The vectors that every processor of a target has: SSE2, NEON, or SIMD128 of WebAssembly (with
-    /// `-C target-feature=+simd128`).
+    /// `-C target-feature=+simd128`). On other 64-bit processors the same loops run in plain 32-bit words.
     Lanes,
     /// 256-bit vectors of x86-64.
     Avx2,

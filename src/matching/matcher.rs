@@ -119,7 +119,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         self.backend.kernel()
     }
 
-    /// What was asked for.
+    /// The configuration that [`Self::start`] took, with `confidence` set where `min_confidence` needs it;
+    /// all zero before.
     pub fn config(&self) -> &Config {
         &self.config
     }

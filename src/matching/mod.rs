@@ -15,7 +15,7 @@
 //! * `stages`: the stages of a row, in running order, with a table of the rows that each one touches:
 //!     1. the row that came out last gets back the answers that were refused as unsure (`withhold`);
 //!     2. denoise, if asked for: the lines that come in are smoothed against noise (in `method`);
-//!     3. census of the row that comes in (`method`, `backend`);
+//!     3. census of the row that comes in (`method`, `backend`); along paths both are a part of 7;
 //!     4. texture and edges of its pixels, the open places that have none, and patterns that repeat along it,
 //!        if asked for;
 //!     5. what was filled in the row that came out last is taken out of it: no later row looks at a guess;
@@ -23,12 +23,13 @@
 //!     7. costs, their aggregation and winner-take-all (`method`, `backend`);
 //!     8. left-right check and sub-pixel fit;
 //!     9. answers refused that are unsure in open places (`open`), on patterns that repeat along the row
-//!        (`repeats`), and where a near surface is carried on over a place without texture (`fattening`);
+//!        (`repeats`), where a near surface is carried on over a place without texture (`fattening`), and
+//!        outside of the edges between which it is (`rims`);
 //!     10. smoothing along the row, within surfaces;
 //!     11. confidence, if asked for;
 //!     12. speckle filter, in a band of five rows;
 //!     13. vertical filter, with the methods along paths;
-//!     14. fill of small gaps, if asked for;
+//!     14. fill of small gaps, if asked for, but on patterns that repeat (`repeats`);
 //!     15. answers refused whose confidence is too low, if asked for (`withhold`);
 //!     16. mask: answers taken away where a camera did not see.
 //! * `external`: rows of winners that something else computed ([`External`], [`WinnerRecord`]), in place of

@@ -66,10 +66,11 @@ impl<'a> Row<'a> {
     ///
     /// `confidence = max(1, m + (40 - min(s / 4, 40)) + (40 - min(t / 4, 40)))`
     ///
-    /// Answers above are as they came out, but for what was filled; the others are as they were before the
-    /// median, the speckle filter and the smoothing down the columns, and so is the answer itself but for
-    /// the median. A filled answer ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five columns
-    /// that have a candidate.
+    /// A neighbour without an answer, or below the image, makes its term 0; one above or beside the image is
+    /// left out. Answers above are as they came out, but for what was filled; the others are as they were
+    /// before the median, the speckle filter and the smoothing down the columns, and so is the answer itself
+    /// but for the median. A filled answer ([`PixelFlags::FILLED`]) has 1, and `m` is 0 in the first five
+    /// columns that have a candidate.
     ///
     /// The number puts the answers of one method in order, the wrong ones first: take away those under a
     /// threshold and the share of wrong ones falls. It is no probability, and says nothing about

@@ -33,8 +33,8 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     /// noise of up to two grey levels, three of it hold 99 % of the answers.
     const SIGMA_PX: f32;
     /// Whether answers that are averaged along the row are filtered down the columns as well:
-    /// `d += 5/8 (d_above - d) + 5/32 (d_below - d)`, where both are within 1 px of d, the row above has come
-    /// out, and the one below is four rows away.
+    /// `d += 5/8 (d_above - d) + 5/32 (d_below - d)`, where each of the two is at most 1 px less than d and
+    /// less than 1 px more, the row above has come out, and the one below is four rows away.
     const VERTICAL_FILTER: bool = false;
     /// The checks of [`Filter::Default`](super::Filter::Default).
     const DEFAULT: Checks = Checks::DEFAULT;
@@ -97,9 +97,9 @@ pub struct Frame<'a> {
     pub(super) codes: &'a mut [u8],
     pub(super) columns: &'a mut [u8],
     pub(super) workspace: RowWorkspace<'a>,
-    /// Texture of each column: a bit for each of the last 16 rows, and the count of the window's
-    /// rows.
+    /// Texture history of each column: bit `k` is the row `k` above the newest.
     pub(super) texture: &'a mut [u16],
+    /// Number of textured pixels of each column in the window's rows.
     pub(super) textured: &'a mut [u8],
     /// Edges of each column: a bit for each of the last eight rows, the newest in the lowest.
     pub(super) edges: &'a mut [u8],

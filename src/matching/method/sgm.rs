@@ -204,7 +204,7 @@ once_without_vectors! {
     }
 }
 
-/// Adds row `bottom` to the costs of the row above it, and selects the winners of that one.
+/// Adds row `bottom` to the costs and selects the winners of `row`, `ROWS_BELOW` rows above it.
 #[inline(always)]
 fn select<S: SgmParameters, const MOST: usize>(
     frame: &mut Frame<'_>,

@@ -13,7 +13,7 @@
 //! stage                       reads                               writes
 //! withhold::restore_unsure    withheld answers                    finished y - r - 5, as before the refusal
 //! S::enter: denoise, if asked lines y - 2 .. y + 2                smoothed lines, for S::enter alone
-//! S::enter: census            lines y - 2 .. y + 2                codes y
+//! S::enter: census            lines y - 2 .. y + 2                codes y; along paths both are in S::select
 //! texture::take_texture       line y                              texture of y, counts of the window
 //! fattening::take_edges       lines y - 1 .. y + 1                edges of y
 //! open::take_open             lines y - 1, y + 1, edges of y      open blocks of every other y

@@ -11,7 +11,8 @@
 //! the column, as the disparity of a plane is, keeps its value. Of independent errors it would leave as much
 //! as an average over 7 rows.
 //!
-//! Both others must be within 1 px of the answer; one without both stays as it is. What lies between is not
+//! Each of the two others must be at most 1 px less than the answer and less than 1 px more; without both it
+//! stays as it is. What lies between is not
 //! looked at, which measured no worse.
 
 use crate::matching::backend::Isa;

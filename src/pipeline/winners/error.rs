@@ -12,7 +12,8 @@ use core::fmt;
 pub enum WinnerPipelineError<E> {
     /// The device gave no winners; its own error is inside. The frame is over.
     Source(WinnerError<E>),
-    /// The line or the call does not fit; nothing has changed.
+    /// The line or the call does not fit, and nothing has changed; but after
+    /// [`MatchError::WinnerRefused`], a winner that no search gives, the frame is over.
     Push(PushError),
     /// The configuration is none that the matcher takes.
     Config(ConfigError),

@@ -17,8 +17,10 @@ use crate::pipeline::reach::reach_down;
 ///
 /// Up to [`Self::set_most_lost`] rows of a frame may be late, short or damaged; by default the first ends it.
 /// Such a row has no answers, and [`DAMAGED`](crate::units::PixelFlags::DAMAGED) on every pixel. Rows that it
-/// can affect through checks keep their answers and have the flag: four above it, and four more below than
-/// the speckle filter counts; along paths, and where open places are looked for, the rest of the frame.
+/// can affect through checks keep their answers and have the flag: four above it, and below it four, one for
+/// the [median](crate::matching::Checks::median), and one for each answer that the speckle filter asks for
+/// ([`speckle_pixels`](crate::matching::Checks::speckle_pixels)); along paths, and where open places are
+/// looked for, the rest of the frame.
 /// Every other row is bit-equal.
 pub struct WinnerPipeline<S: Method, const W: usize, const D: usize>
 where

@@ -1,10 +1,10 @@
-//! Which capacities a matcher has, as types: `cargo check` refuses the others.
+//! The numbers of disparities that a matcher can have room for, checked when the program is compiled.
 
 /// Capacity of a matcher for `D` disparities.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub struct Capacity<const D: usize>;
 
-/// Capacities that there are: multiples of 16, from 16 to 256.
+/// Numbers of disparities that there are matchers for: the multiples of 16 from 16 to 256.
 ///
 /// ```compile_fail,E0277
 /// use stereopsis::matching::{Block, Matcher};
@@ -17,7 +17,7 @@ pub struct Capacity<const D: usize>;
 pub trait Supported: sealed::Sealed {}
 
 mod sealed {
-    /// What this module alone can promise of a capacity.
+    /// Keeps other crates from implementing [`Supported`](super::Supported).
     pub trait Sealed {}
 }
 

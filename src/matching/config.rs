@@ -20,7 +20,7 @@ pub struct Config {
     pub min_disparity: u16,
     /// The checks that refuse answers.
     pub checks: Checks,
-    /// What the methods along paths take changes to be worth.
+    /// P1, P2 and truncations of semi-global matching; the methods over windows ignore them.
     pub penalties: Penalties,
     /// Whether rows say how sure each answer is ([`Row::confidences`](super::Row::confidences)): a search
     /// more for each pixel.
@@ -120,14 +120,14 @@ impl Config {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Checks {
-    /// Left-right check: an answer stays when the winner that the right image's pixel keeps is at most this
-    /// many px from it. `None`: not checked.
+    /// Left-right check: largest difference, px, between a winner and the disparity kept by its partner in
+    /// the right image, that of the cheapest left pixel that chose it. `None`: not checked.
     pub left_right_px: Option<u8>,
     /// Uniqueness: an answer stays when every other disparity costs more than the winner by over this share
     /// of its own cost, percent, 0 to 99; 0 refuses exact ties only. Those up to two px beside the
     /// winner do not count. `None`: not checked, and the kernel saves the pass.
     pub uniqueness_percent: Option<u8>,
-    /// Flat: an answer stays when it costs less than a neighbour one px below or above.
+    /// Flat: refuses a winner that costs the same as both neighbouring disparities.
     pub refuse_flat: bool,
     /// Texture: a pixel counts as textured when its left and right neighbour differ by this many grey
     /// levels.

@@ -11,7 +11,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<External<S>, W, D>
 where
     External<S>: Method,
 {
-    /// How many rows above the line that goes in the winners lie that go in with it.
+    /// Number of rows by which the winners that go in with a line lag behind that line.
     pub const WINNERS_ABOVE: usize = S::RADIUS_Y;
 
     /// Whether the checks that were configured look at the left image: for texture, for edges, or along paths

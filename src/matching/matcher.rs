@@ -125,7 +125,7 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         &self.config
     }
 
-    /// Forgets the frame before.
+    /// Starts a new frame: the next line pushed is row 0, and rows of an unfinished frame are lost.
     pub fn begin_frame(&mut self) {
         self.taken = 0;
         self.backend = self.next_backend;
@@ -135,7 +135,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         stages::begin(self.frame());
     }
 
-    /// Takes the next row of the image, as the five lines around it in both cameras.
+    /// Takes the next row with the two lines above and below it in both cameras. [`MatchError::FrameDone`]
+    /// after the last line; an error changes nothing.
     pub fn push(&mut self, left: &[&[u8]; 5], right: &[&[u8]; 5]) -> Result<(), MatchError> {
         self.step(Some([left, right]))
     }
@@ -146,7 +147,8 @@ impl<S: Method, const W: usize, const D: usize> Matcher<S, W, D> {
         self.step(None)
     }
 
-    /// The row that the last line brought out, if it did.
+    /// The row that the last [`Self::push`] or [`Self::flush`] completed; `None` for the first
+    /// [`Self::DELAY`] of a frame.
     pub fn row(&self) -> Option<Row<'_>> {
         let width = usize::from(self.config.width);
         let index = self.taken.checked_sub(Self::DELAY + 1)?;

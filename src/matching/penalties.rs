@@ -1,4 +1,4 @@
-//! What semi-global matching takes a pixel's cost and a step of the disparity to be worth.
+//! P1, P2 and truncations of semi-global matching (Hirschmüller 2008), by how brightness changes.
 
 /// The numbers of the methods along paths, [`Sgm`](super::Sgm), [`SgmLean`](super::SgmLean) and
 /// [`SgmEdge`](super::SgmEdge); the block methods do not look at them. Each method's own,
@@ -27,12 +27,12 @@ pub struct Penalties {
     /// [`Noise::Low`](crate::imaging::Noise::Low) it is a quarter, with
     /// [`Noise::High`](crate::imaging::Noise::High) a half.
     pub gradient: u8,
-    /// A pixel's cost is cut off at this.
+    /// Truncation of a pixel's matching cost.
     pub cost: u8,
-    /// What a change of the disparity by one px costs: where the left image's brightness changes little, and
-    /// more.
+    /// P1: penalty of a disparity change of one px, where the left image's brightness changes little, and
+    /// where it changes more.
     pub step: [u8; 2],
-    /// What any larger change costs: where the brightness changes little, more, and much.
+    /// P2: penalty of a larger disparity change, where brightness changes little, more, and much.
     pub jump: [u8; 3],
     /// The changes of brightness, in grey levels, at which it is more, and much. Down a column, much is what
     /// [`SgmEdge`](super::SgmEdge) averages no costs across.

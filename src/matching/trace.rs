@@ -1,4 +1,4 @@
-//! Rows of stages as they leave them, for who holds a core to vectors of the dense path.
+//! Trace of the dense path: rows after each stage, to compare another implementation stage by stage.
 
 use super::memory::record::WinnerRecord;
 use crate::units::{Disparity, PixelFlags};

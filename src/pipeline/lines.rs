@@ -12,7 +12,7 @@ pub(super) struct LineGuard {
     pub(super) most_lost: Option<u16>,
     /// Number of replaced lines of this frame.
     pub(super) lost: u16,
-    /// Lowest replaced line.
+    /// Row number of the last line of this frame that was replaced.
     pub(super) last_lost: usize,
     /// Whether each of the last 64 lines was replaced, the newest in bit 0.
     replaced: u64,

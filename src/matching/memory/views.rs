@@ -14,7 +14,7 @@ use core::slice;
 ///
 /// # Safety
 ///
-/// Every bit pattern of the type's size is a value of the type, and every value has all of its bytes set.
+/// Every bit pattern is a valid value, and the type has no padding: all of its bytes are initialised.
 pub(in crate::matching) unsafe trait Plain: Copy + 'static {}
 
 // SAFETY: an integer.

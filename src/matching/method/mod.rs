@@ -43,7 +43,7 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     const DEFAULT_IN_NOISE: [Checks; 2] = [Self::DEFAULT; 2];
     /// The checks of [`Filter::Strict`](super::Filter::Strict).
     const STRICT: Checks = Checks::STRICT;
-    /// What changes of the disparity are worth; of no meaning to the block methods.
+    /// P1, P2 and truncations of semi-global matching; the methods over windows ignore them.
     ///
     /// ```
     /// use stereopsis::matching::{Config, Filter, Method, SgmEdge};
@@ -51,7 +51,7 @@ pub trait Method: MethodParameters + Costs + Steps + Sized + 'static {
     /// assert_eq!(config.penalties, SgmEdge::PENALTIES);
     /// ```
     const PENALTIES: Penalties = Penalties::DEFAULT;
-    /// What changes of the disparity are worth where cameras have noise.
+    /// P1, P2 and truncations where cameras have noise.
     const PENALTIES_IN_NOISE: Penalties = Self::PENALTIES;
     /// The method's name, as the programs spell it.
     const NAME: &'static str;

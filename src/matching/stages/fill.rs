@@ -28,7 +28,7 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
         let here = waiting(newest);
         let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
         let (most, step) = (checks.fill_pixels, checks.fill_step);
-        frame.backend.fill(FillWork { answers, flags, room: frame.workspace.spare(), most, step });
+        frame.backend.fill(FillWork { answers, flags, room: frame.workspace.scratch(), most, step });
     }
 }
 

@@ -1,9 +1,6 @@
 //! The left-right check, from the left winners alone.
 //!
-//! Each column of the right image keeps the cheapest of the left pixels that chose it. A left pixel whose
-//! disparity is far from what its partner kept was beaten there: it is occluded or wrong. Nothing is searched
-//! a second time, and on real pairs the check refuses fewer right answers than one against the right image's
-//! own winners.
+//! The check itself is described in `left_right` of [`stages`](crate::matching::stages).
 //!
 //! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while
 //! nobody offered.

@@ -20,9 +20,8 @@ pub(in crate::matching::backend) struct Features<'a> {
     /// Features of the right image, `count` bytes for each one after the other: along the line, across it,
     /// census, brightness halved, and the least and the greatest of a column's gradient along the line and of
     /// those halfway to its neighbours (of no meaning where nothing is compared between pixels; doubled
-    /// in `armv7em` and `mve`). Column `x` is compared with `stride` of them from `x` on. The first
-    /// column is repeated
-    /// for those that lie left of the image.
+    /// in `armv7em` and `mve`). Column `x` is compared with `stride` of them from `x` on. The first column is
+    /// repeated for those that lie left of the image.
     pub right: &'a [u8],
     pub count: usize,
 }

@@ -1,8 +1,7 @@
 //! The passes, written once for groups of bytes whose lanes run over the disparities of one pixel.
 //!
 //! * `cost`, `edges`, `select`: the passes; `gather` and `selection`: the two ends of the last one;
-//!   `alternate`:
-//!   the paths where registers hold a few cells only.
+//!   `alternate`: the paths where registers hold a few cells only.
 
 mod alternate;
 mod cost;
@@ -145,7 +144,7 @@ impl<G: Group, const CELLS: usize, const ALL: bool> Path<G, CELLS, ALL> {
         self
     }
 
-    /// Goes on to a pixel that has these costs.
+    /// Advances the path by one pixel and returns its aggregated costs.
     #[inline(always)]
     fn step(mut self, steps: &Steps<G, CELLS, ALL>, change: &[G::Cell; 2], costs: &[G::Cell]) -> Self {
         let (&first, rest) = self.cells(costs.len()).split_first().unwrap_or((&steps.far, &[]));

@@ -52,8 +52,8 @@ impl DisparityColours {
         let from_far = u32::from(disparity.raw().clamp(self.far, self.near) - self.far);
         // In 256ths of a step of the table.
         let at = from_far * steps * 256 / u32::from(self.near.saturating_sub(self.far)).max(1);
-        let (index, part) =
-            ((at / 256).min(steps - 1) as usize, at.saturating_sub((at / 256).min(steps - 1) * 256));
+        let index = (at / 256).min(steps - 1);
+        let (index, part) = (index as usize, at - 256 * index);
         let of = |index: usize| VIRIDIS.get(index).copied().unwrap_or_default();
         let ([r0, g0, b0], [r1, g1, b1]) = (of(index), of(index + 1));
         let mix = |a: u8, b: u8| ((u32::from(a) * (256 - part) + u32::from(b) * part + 128) / 256) as u8;

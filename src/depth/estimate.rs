@@ -62,7 +62,7 @@ impl DepthScale {
     /// Returns the depth of a disparity with standard deviation `sigma_px`; `None` for no answer and at or
     /// behind infinity.
     pub fn depth(&self, disparity: Disparity, sigma_px: f32) -> Option<Depth> {
-        let (Metres(depth_m), Metres(sigma_m)) = (self.metres(disparity)?, self.sigma(disparity, sigma_px)?);
+        let (Metres(depth_m), Metres(sigma_m)) = self.metres_and_sigma(disparity.to_f32()?, sigma_px)?;
         Some(Depth { depth_m, sigma_m })
     }
 }

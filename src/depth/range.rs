@@ -25,17 +25,11 @@ impl DepthScale {
     /// the whole search lies at or behind infinity.
     pub fn range(&self, config: &Config, sigma_px: f32) -> Option<DepthRange> {
         let last = config.min_disparity.saturating_add(config.disparities).saturating_sub(2);
-        let (nearest, sigma_nearest) = self.depth_and_sigma(f32::from(last), sigma_px)?;
+        let (nearest, sigma_nearest) = self.metres_and_sigma(f32::from(last), sigma_px)?;
         let one_px_of_parallax = 1.0 - self.rig().disparity_offset_px();
         let first = f32::from(config.min_disparity).max(one_px_of_parallax).min(f32::from(last));
-        let (farthest, sigma_farthest) = self.depth_and_sigma(first, sigma_px)?;
+        let (farthest, sigma_farthest) = self.metres_and_sigma(first, sigma_px)?;
         Some(DepthRange { nearest, sigma_nearest, farthest, sigma_farthest })
-    }
-
-    fn depth_and_sigma(&self, disparity_px: f32, sigma_px: f32) -> Option<(Metres, Metres)> {
-        let z = self.rig().depth_m(disparity_px)?;
-        let per_px = z * z / (self.rig().focal_px() * self.rig().baseline_m());
-        Some((Metres(z), Metres(per_px * sigma_px)))
     }
 }
 

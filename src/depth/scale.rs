@@ -106,8 +106,16 @@ impl DepthScale {
     /// Returns the depth's standard deviation for a disparity with standard deviation `sigma_px`, by
     /// first-order propagation: `sigma_Z = Z^2 / (f b) sigma_d`.
     pub fn sigma(&self, disparity: Disparity, sigma_px: f32) -> Option<Metres> {
-        let Metres(z) = self.metres(disparity)?;
-        Some(Metres(z * z / (self.rig.focal_px() * self.rig.baseline_m()) * sigma_px))
+        self.metres_and_sigma(disparity.to_f32()?, sigma_px).map(|(_, sigma)| sigma)
+    }
+
+    /// Returns the depth of a disparity in px, and its standard deviation.
+    // In flash once.
+    #[inline(never)]
+    pub(super) fn metres_and_sigma(&self, disparity_px: f32, sigma_px: f32) -> Option<(Metres, Metres)> {
+        let z = self.rig.depth_m(disparity_px)?;
+        let per_px = z * z / (self.rig.focal_px() * self.rig.baseline_m());
+        Some((Metres(z), Metres(per_px * sigma_px)))
     }
 
     /// Returns the point that column `u` and row `v` show, in the left camera's frame, m.

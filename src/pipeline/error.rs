@@ -1,6 +1,6 @@
 //! Errors of the pipeline.
 
-use crate::camera::{CameraError, LineFormat};
+use crate::camera::{CameraError, ErrorType, LineFormat};
 use crate::matching::MatchError;
 use core::fmt;
 
@@ -41,6 +41,9 @@ pub enum PipelineError<E> {
     /// The matcher refused a line; its own error is inside.
     Matcher(MatchError),
 }
+
+/// A `T` of a pipeline that pulls lines from a camera `C`, or why there is none.
+pub(super) type CameraResult<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
 impl<E: fmt::Display> fmt::Display for PipelineError<E> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -116,5 +119,17 @@ error_text!(PushError {
 impl From<MatchError> for PushError {
     fn from(e: MatchError) -> Self {
         Self::Matcher(e)
+    }
+}
+
+/// Checks that a frame of `height` rows is under way, of which the matcher took `taken`: `usize::MAX` between
+/// frames.
+pub(super) fn begun(height: usize, taken: usize) -> Result<(), PushError> {
+    if height == 0 {
+        Err(MatchError::NotStarted.into())
+    } else if taken == usize::MAX {
+        Err(PushError::NotBegun)
+    } else {
+        Ok(())
     }
 }

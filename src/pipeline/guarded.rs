@@ -1,10 +1,11 @@
 //! A pipeline that tolerates camera faults.
 
 use super::counters::{FaultCounters, count};
+use super::error::CameraResult;
 use super::lines::LineGuard;
 use super::reach::reach_down;
 use super::{Pipeline, PipelineError, PushError};
-use crate::camera::{ErrorType, FrameStart, LineFault, StereoSource};
+use crate::camera::{FrameStart, LineFault, StereoSource};
 use crate::matching::{
     Capacity, Config, ConfigError, Kernel, KernelError, MatchError, Method, Row, Supported,
 };
@@ -51,8 +52,6 @@ pub struct Guarded<S: Method, const W: usize, const D: usize> {
     before: Option<FrameStart>,
     is_running: bool,
 }
-
-type Guard<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
 impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     /// Creates a pipeline that awaits [`Self::start`]. All its bytes are zero, so that a static takes no
@@ -112,7 +111,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     }
 
     /// Waits for the camera's next frame, and drops the one before.
-    pub fn begin_frame<C: StereoSource>(&mut self, camera: &mut C) -> Guard<FrameStart, C> {
+    pub fn begin_frame<C: StereoSource>(&mut self, camera: &mut C) -> CameraResult<FrameStart, C> {
         self.give_up();
         let start = match self.pipeline.begin_frame(camera) {
             Ok(start) => start,
@@ -139,8 +138,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
                 0 => {}
                 1.. => {
                     let gap = start.sequence.wrapping_sub(before.sequence) - 1;
-                    let skipped = &mut self.lines.counters.frames_skipped;
-                    *skipped = skipped.saturating_add(gap);
+                    count(&mut self.lines.counters.frames_skipped, gap as usize);
                 }
                 _ => count(&mut self.lines.counters.restarts, 1),
             }
@@ -152,7 +150,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
     }
 
     /// Returns the next row; `None` after the frame's last row. An error ends the frame.
-    pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> Guard<Option<Row<'_>>, C> {
+    pub fn next_row<C: StereoSource>(&mut self, camera: &mut C) -> CameraResult<Option<Row<'_>>, C> {
         let Self { pipeline, lines, .. } = self;
         match pipeline.advance(|pipeline| lines.take(pipeline, camera)) {
             Err(e) => {

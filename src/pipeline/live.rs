@@ -1,5 +1,6 @@
 //! The pipeline: line windows and a matcher in one block of memory.
 
+use super::error::begun;
 use super::{PipelineError, PushError};
 use crate::camera::{FrameStart, LineFormat, PixelFormat, StereoSource};
 use crate::imaging::LineWindow;
@@ -248,13 +249,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
 
     /// Checks that a frame is under way.
     fn begun(&self) -> Result<(), PushError> {
-        if self.height == 0 {
-            Err(MatchError::NotStarted.into())
-        } else if self.taken == usize::MAX {
-            Err(PushError::NotBegun)
-        } else {
-            Ok(())
-        }
+        begun(self.height, self.taken)
     }
 
     /// Ends the frame.

@@ -1,16 +1,14 @@
 //! Rows that a task awaits: the pipeline is asked again whenever the interrupt has brought a line.
 
+use super::error::CameraResult;
 use super::{Guarded, Pipeline, PipelineError};
-use crate::camera::{CameraError, ErrorType, FrameStart, LineListener, StereoSource};
+use crate::camera::{CameraError, FrameStart, LineListener, StereoSource};
 use crate::matching::{Method, Row};
 use core::future::Future;
 use core::task::Poll;
 
 // The futures are made by hand: one that the compiler makes of an `async fn` panics when it is polled after
 // its end, and a firmware that may have no panic does not link with it.
-
-/// What an await of a `T` gives.
-type Awaited<T, C> = Result<T, PipelineError<<C as ErrorType>::Error>>;
 
 impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
     /// Awaits the camera's next frame, and drops the one before, as [`Self::begin_frame`] does.
@@ -21,7 +19,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         &mut self,
         camera: &mut C,
         lines: &mut LineListener<'_>,
-    ) -> impl Future<Output = Awaited<FrameStart, C>> {
+    ) -> impl Future<Output = CameraResult<FrameStart, C>> {
         lines.until(move || pending(self.begin_frame(camera)))
     }
 
@@ -35,7 +33,7 @@ impl<S: Method, const W: usize, const D: usize> Pipeline<S, W, D> {
         &'p mut self,
         camera: &mut C,
         lines: &mut LineListener<'_>,
-    ) -> impl Future<Output = Awaited<Option<Row<'p>>, C>> {
+    ) -> impl Future<Output = CameraResult<Option<Row<'p>>, C>> {
         lines.until(row(self, move |this| this.next_row(camera).map(|row| row.is_some()), Self::row))
     }
 }
@@ -46,7 +44,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         &mut self,
         camera: &mut C,
         lines: &mut LineListener<'_>,
-    ) -> impl Future<Output = Awaited<FrameStart, C>> {
+    ) -> impl Future<Output = CameraResult<FrameStart, C>> {
         lines.until(move || pending(self.begin_frame(camera)))
     }
 
@@ -55,7 +53,7 @@ impl<S: Method, const W: usize, const D: usize> Guarded<S, W, D> {
         &'p mut self,
         camera: &mut C,
         lines: &mut LineListener<'_>,
-    ) -> impl Future<Output = Awaited<Option<Row<'p>>, C>> {
+    ) -> impl Future<Output = CameraResult<Option<Row<'p>>, C>> {
         lines.until(row(self, move |this| this.next_row(camera).map(|row| row.is_some()), Self::row))
     }
 }

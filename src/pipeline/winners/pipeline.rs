@@ -7,6 +7,7 @@ use crate::matching::{
     Capacity, Config, External, MatchError, Matcher, Method, Row, Supported, WinnerRecord,
 };
 use crate::pipeline::PushError;
+use crate::pipeline::error::begun;
 use crate::pipeline::reach::reach_down;
 
 /// The rows of the method `S`, of winners that a [`WinnerSource`] computes, in memory that grows with the
@@ -279,13 +280,7 @@ where
 
     /// Checks that a frame is under way.
     fn begun(&self) -> Result<(), PushError> {
-        if self.height == 0 {
-            Err(MatchError::NotStarted.into())
-        } else if self.taken == usize::MAX {
-            Err(PushError::NotBegun)
-        } else {
-            Ok(())
-        }
+        begun(self.height, self.taken)
     }
 }
 

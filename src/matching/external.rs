@@ -53,8 +53,11 @@ where
         self.step_winners(left, true, winners)
     }
 
-    /// Checks that a row of winners is as long as a line and that the search can have each of them.
-    pub(crate) fn check_winners(&self, winners: &[WinnerRecord]) -> Result<(), MatchError> {
+    /// The winners of a line's pixels, if there are as many and the search can have each of them.
+    pub(crate) fn check_winners<'w>(
+        &self,
+        winners: &'w [WinnerRecord],
+    ) -> Result<&'w [WinnerRecord], MatchError> {
         let config = self.config();
         let (width, least) = (usize::from(config.width), usize::from(config.min_disparity));
         let given = winners.get(..width).ok_or(MatchError::Winners { needed: width })?;
@@ -64,7 +67,7 @@ where
                 return Err(MatchError::WinnerRefused { column: x as u16 });
             }
         }
-        Ok(())
+        Ok(given)
     }
 
     /// Goes on below the image's last row, until the last results are out. Before the last row went in, and
@@ -89,8 +92,7 @@ where
             return Err(MatchError::FrameDone);
         }
         if self.winners_due().is_some() {
-            self.check_winners(winners)?;
-            let given = winners.get(..width).ok_or(MatchError::Winners { needed: width })?;
+            let given = self.check_winners(winners)?;
             let records = view_mut::<u8, WinnerRecord>(self.memory.parts(width).codes);
             for (to, from) in records.iter_mut().zip(given) {
                 *to = *from;

@@ -1,8 +1,7 @@
 //! One row of results.
 
-use super::memory::notes::Note;
+use super::config::Config;
 use super::memory::rings::{BAND, HISTORY, row as slot};
-use super::stages::confidence::AGREEMENT;
 use crate::units::{Disparity, PixelFlags};
 use core::fmt;
 
@@ -55,7 +54,7 @@ impl<'a> Row<'a> {
     }
 
     /// The largest of [`Self::confidences`].
-    pub const MOST_CONFIDENCE: u8 = Note::MOST_MARGIN + 2 * AGREEMENT;
+    pub const MOST_CONFIDENCE: u8 = Config::MOST_CONFIDENCE;
 
     /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no
     /// answer. Empty unless [`Config::confidence`](super::Config::confidence) asked for them.

@@ -25,7 +25,8 @@ pub(in crate::matching) struct Select<'a> {
 /// `u8::MAX` where there is none. A kernel that is asked for nothing ([`Unique::is_asked`]) need not look for
 /// it; [`Unique::check`] and [`Unique::checks_from`] look where it is asked for.
 pub(in crate::matching) struct Unique<'a> {
-    share: Share,
+    /// The share of the second best cost, percent, that a winner's has to stay below.
+    share: u32,
     /// The flags of pixels whose second best is too near:
     /// [`Checks::uniqueness_percent`](crate::matching::Checks::uniqueness_percent). Empty where that is not
     /// asked.
@@ -35,25 +36,13 @@ pub(in crate::matching) struct Unique<'a> {
     margins: &'a mut [u8],
 }
 
-/// The share of the second best cost, percent, that a winner's has to stay below.
-#[derive(Clone, Copy)]
-struct Share(u32);
-
-impl Share {
-    /// Whether the winner costs too much.
-    #[inline(always)]
-    fn is_ambiguous(self, cost: u8, second: u8) -> bool {
-        second < u8::MAX && u32::from(second) * self.0 <= u32::from(cost) * 100
-    }
-}
-
 impl<'a> Unique<'a> {
     /// Flags the pixels of a row, none of them where no `percent` is asked for, and gives their margins, as
     /// far as there are places for them.
     pub fn new(percent: Option<u8>, flags: &'a mut [PixelFlags], margins: &'a mut [u8]) -> Self {
         match percent {
-            Some(percent) => Self { share: Share(100 - u32::from(percent.min(99))), flags, margins },
-            None => Self { share: Share(100), flags: &mut [], margins },
+            Some(percent) => Self { share: 100 - u32::from(percent.min(99)), flags, margins },
+            None => Self { share: 100, flags: &mut [], margins },
         }
     }
 
@@ -88,16 +77,22 @@ impl<'a> Unique<'a> {
     }
 }
 
+/// Whether the winner costs too much.
+#[inline(always)]
+fn is_ambiguous(share: u32, cost: u8, second: u8) -> bool {
+    second < u8::MAX && u32::from(second) * share <= u32::from(cost) * 100
+}
+
 /// Flags a pixel whose second best is too near, and gives its margin.
 #[inline(always)]
 fn check_second(
-    share: Share,
+    share: u32,
     (flags, margin): (Option<&mut PixelFlags>, Option<&mut u8>),
     cost: u8,
     second: u8,
 ) {
     if let Some(flags) = flags {
-        *flags = flags.union(PixelFlags::AMBIGUOUS.when(share.is_ambiguous(cost, second)));
+        *flags = flags.union(PixelFlags::AMBIGUOUS.when(is_ambiguous(share, cost, second)));
     }
     if let Some(margin) = margin {
         *margin = second.wrapping_sub(cost);

@@ -29,7 +29,9 @@ use crate::matching::method::Frame;
 use crate::units::{Disparity, PixelFlags};
 
 /// What agreement with the answers beside it is worth, and as much that with those above and below.
-pub(in crate::matching) const AGREEMENT: u8 = 40;
+const AGREEMENT: u8 = 40;
+const _: () =
+    assert!(Note::MOST_MARGIN + 2 * AGREEMENT == Config::MOST_CONFIDENCE, "what all that agrees gives");
 /// How far a refused pixel counts as being: so far that nothing agrees.
 const MISSING: u16 = 4 * AGREEMENT as u16;
 /// How far off the answers are that are looked at: along the row, and above and below.

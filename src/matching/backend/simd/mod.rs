@@ -104,9 +104,7 @@ impl Backend {
             Self::Planes | Self::Lanes => work(),
         }
     }
-}
 
-impl Backend {
     /// The disparity that each winner's partner keeps, with room for a byte more a winner.
     fn keep(
         self,

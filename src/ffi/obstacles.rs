@@ -6,7 +6,7 @@ use super::rig::scale_of;
 use super::state::{Content, State, checked, kind, share_bytes};
 use super::status::either;
 use super::{CRig, Status};
-use crate::obstacles::{Column, Filling, ObstaclesState, ObstaclesView};
+use crate::obstacles::{Column, Filling, Interval, ObstaclesState, ObstaclesView};
 use crate::units::Disparity;
 use core::ffi::c_void;
 use core::slice::from_raw_parts_mut;
@@ -16,7 +16,8 @@ pub struct ObstaclesHandle {
     _opaque: [u8; 0],
 }
 
-/// A finder: behind it come what each column of cells has, the cells, and what each row of them has.
+/// A finder: behind it come what each row of cells shows of the ground, what each column has, the cells, and
+/// the labels of a column.
 pub(super) struct Finder {
     state: ObstaclesState,
     columns: usize,
@@ -47,9 +48,10 @@ impl Content for Finder {
 /// Bytes of a finder beside its cells, on any target.
 const FIXED_BYTES: usize = 272;
 const COLUMN_BYTES: usize = size_of::<Column>() + size_of::<Filling>() + size_of::<i16>();
-const ROW_BYTES: usize = ObstaclesView::BINS + 1;
+const ROW_BYTES: usize = size_of::<Interval>() + 1;
 const _: () = {
-    assert!(align_of::<State<Finder>>() >= align_of::<Column>());
+    assert!(align_of::<State<Finder>>() >= align_of::<Interval>());
+    assert!(align_of::<Interval>() >= align_of::<Column>());
     assert!(align_of::<Column>() >= align_of::<Filling>());
     assert!(align_of::<Filling>() >= align_of::<Disparity>());
     assert!(align_of::<Disparity>() == align_of::<i16>());
@@ -77,17 +79,17 @@ impl Finder {
         // SAFETY: the memory holds all of them behind the state, as `init` has counted and cleared them:
         // zeros are columns that show nothing, cells that are empty, disparities and numbers.
         unsafe {
-            let first = handle.cast::<State<Self>>().add(1).cast::<Column>();
+            let intervals = handle.cast::<State<Self>>().add(1).cast::<Interval>();
+            let first = intervals.add(rows).cast::<Column>();
             let filling = first.add(columns).cast::<Filling>();
             let disparities = filling.add(columns).cast::<Disparity>();
             let bearings = disparities.add(cells).cast::<i16>();
-            let bins = bearings.add(columns).cast::<u8>();
-            let labels = bins.add(rows * ObstaclesView::BINS);
+            let labels = bearings.add(columns).cast::<u8>();
             ObstaclesView::new(
                 &mut self.state,
                 from_raw_parts_mut(disparities, cells),
                 from_raw_parts_mut(filling, columns),
-                from_raw_parts_mut(bins, rows * ObstaclesView::BINS),
+                from_raw_parts_mut(intervals, rows),
                 from_raw_parts_mut(first, columns),
                 from_raw_parts_mut(labels, rows),
                 from_raw_parts_mut(bearings, columns),

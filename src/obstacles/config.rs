@@ -21,7 +21,7 @@ pub enum GroundSource {
         /// Height of the camera above the ground, mm.
         height_mm: u16,
     },
-    /// The plane is searched in the v-disparity of each frame.
+    /// The plane is searched in each frame.
     Searched {
         /// Smallest height of the camera above the ground, mm.
         least_height_mm: u16,
@@ -73,8 +73,8 @@ impl ObstacleConfig {
     /// Largest number of sectors.
     pub const MOST_SECTORS: usize = 32;
 
-    /// The parallax below which a distance is not told, in standard deviations of disparity: there the
-    /// deviation of the distance is a tenth of it.
+    /// Smallest parallax at which a distance is reported, in standard deviations of disparity: there
+    /// `sigma_Z` is a tenth of `Z`.
     pub const FARTHEST_SIGMAS: u16 = 10;
 
     /// The limits before a start, which find nothing.

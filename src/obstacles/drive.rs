@@ -16,9 +16,9 @@ pub struct DriveConfig {
     /// Width of the corridor that the vehicle drives through, mm, half of it on each side of the optical axis
     /// of the left camera: where the vehicle's middle is elsewhere, twice the distance of the two more.
     pub corridor_mm: u16,
-    /// Distance from the camera at which the vehicle has to stand, mm.
+    /// Gap between the camera and an obstacle at standstill, mm.
     pub margin_mm: u16,
-    /// Time from a picture to the brakes, ms.
+    /// Reaction time from the exposure to the brakes, ms.
     pub reaction_ms: u16,
     /// Deceleration of the brakes, mm/s^2; 0 is taken as 1.
     pub brake_mm_s2: u16,
@@ -68,7 +68,7 @@ pub struct Verdict {
     pub nearest: StixelKind,
     /// Time until the vehicle reaches it at its speed, ms; `None` where nothing is there or it stands.
     pub contact_ms: Option<u32>,
-    /// Way that the vehicle needs to stand, mm, margin included.
+    /// Stopping distance at this speed, mm, margin included.
     pub stopping_mm: u16,
 }
 
@@ -93,7 +93,7 @@ impl DriveRule {
         Self { config, held: Held::NOTHING, beside: [Beside::NOTHING; 2] }
     }
 
-    /// Way that a vehicle needs to stand: `margin + v t + v^2 / (2 a)`, mm.
+    /// Stopping distance `margin + v t + v^2 / (2 a)`, mm, 65535 at most.
     pub fn stopping_mm(&self, speed_mm_s: u16) -> u16 {
         let v = u64::from(speed_mm_s);
         let brake = 2 * u64::from(self.config.brake_mm_s2.max(1));
@@ -141,14 +141,10 @@ impl DriveRule {
             return verdict(Decision::Blind(BlindReason::Unseen), contact_ms);
         }
         let soon = contact_ms.is_some_and(|ms| ms <= self.config.slow_ms.into());
-        match nearest.filter(|&mm| mm <= needed || soon) {
-            Some(mm) => verdict(Decision::Slow(mm), contact_ms),
-            // Seen, but not believed in yet.
-            None => match corridor.nearest.filter(|&mm| mm <= needed) {
-                Some(mm) => verdict(Decision::Slow(mm), contact_ms),
-                None => verdict(Decision::Clear, contact_ms),
-            },
-        }
+        // Or seen, but not confirmed yet.
+        let slow = nearest.filter(|&mm| mm <= needed || soon);
+        let slow = slow.or(corridor.nearest.filter(|&mm| mm <= needed));
+        verdict(slow.map_or(Decision::Clear, Decision::Slow), contact_ms)
     }
 
     /// Takes what a frame shows at the picture's sides, and returns the nearest that left there or is about

@@ -4,16 +4,17 @@ use super::column::Column;
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::grid::Filling;
 use super::ground::{CarriedGround, Ground};
+use super::interval::Interval;
+use super::ransac::fit;
 use super::setup::Setup;
 use super::state::ObstaclesState;
 use super::stixel::Labelling;
 use super::surfaces::stixels;
-use super::v_disparity::{BINS, fit};
 use super::watchdog::BlindReason;
 use crate::depth::DepthScale;
 use crate::units::{Disparity, PixelFlags};
 
-/// Obstacles of frames of up to `C` columns and `R` rows of cells, in fixed memory: about `2 C R + 31 C + 33
+/// Obstacles of frames of up to `C` columns and `R` rows of cells, in fixed memory: about `2 C R + 30 C + 17
 /// R` bytes.
 ///
 /// Rows go in as they leave the matcher; after the last one, [`Self::finish`] makes the frame's ground,
@@ -22,7 +23,7 @@ use crate::units::{Disparity, PixelFlags};
 pub struct Obstacles<const C: usize, const R: usize> {
     cells: [[Disparity; C]; R],
     filling: [Filling; C],
-    bins: [[u8; BINS]; R],
+    intervals: [Interval; R],
     columns: [Column; C],
     labels: [u8; R],
     bearings: [i16; C],
@@ -34,7 +35,7 @@ pub struct Obstacles<const C: usize, const R: usize> {
 pub struct ObstaclesView<'a> {
     pub(super) cells: &'a mut [Disparity],
     pub(super) filling: &'a mut [Filling],
-    pub(super) bins: &'a mut [u8],
+    pub(super) intervals: &'a mut [Interval],
     pub(super) columns: &'a mut [Column],
     pub(super) labels: &'a mut [u8],
     pub(super) bearings: &'a mut [i16],
@@ -48,7 +49,7 @@ impl<const C: usize, const R: usize> Obstacles<C, R> {
         Self {
             cells: [[Disparity::ZERO; C]; R],
             filling: [Filling::EMPTY; C],
-            bins: [[0; BINS]; R],
+            intervals: [Interval::ZERO; R],
             columns: [Column::EMPTY; C],
             labels: [0; R],
             bearings: [0; C],
@@ -61,7 +62,7 @@ impl<const C: usize, const R: usize> Obstacles<C, R> {
         ObstaclesView {
             cells: self.cells.as_flattened_mut(),
             filling: &mut self.filling,
-            bins: self.bins.as_flattened_mut(),
+            intervals: &mut self.intervals,
             columns: &mut self.columns,
             labels: &mut self.labels,
             bearings: &mut self.bearings,
@@ -103,23 +104,20 @@ impl<const C: usize, const R: usize> Default for Obstacles<C, R> {
 }
 
 impl<'a> ObstaclesView<'a> {
-    /// Counts of a row of cells, bytes.
-    pub const BINS: usize = BINS;
-
     /// A finder in the caller's memory: `filling`, `columns` and `bearings` have one of each for every
-    /// column of cells, `labels` has one and `bins` has [`Self::BINS`] for every row of cells, `cells` holds
+    /// column of cells, `intervals` and `labels` have one for every row of cells, `cells` holds
     /// all cells of a frame. It does not matter what is in them before [`Self::start`], which names what is
     /// too short; later views need what the last one left, and one that has less is as if not started.
     pub fn new(
         state: &'a mut ObstaclesState,
         cells: &'a mut [Disparity],
         filling: &'a mut [Filling],
-        bins: &'a mut [u8],
+        intervals: &'a mut [Interval],
         columns: &'a mut [Column],
         labels: &'a mut [u8],
         bearings: &'a mut [i16],
     ) -> Self {
-        Self { cells, filling, bins, columns, labels, bearings, state }
+        Self { cells, filling, intervals, columns, labels, bearings, state }
     }
 }
 
@@ -140,7 +138,6 @@ impl ObstaclesView<'_> {
         for (x, to) in self.bearings.iter_mut().enumerate() {
             *to = setup.rig.bearing_mrad((x * usize::from(config.cell_width)) as f32 + half);
         }
-        self.columns.fill(Column::EMPTY);
         self.state.carried = CarriedGround::NONE;
         self.state.setup = setup;
         self.begin();
@@ -174,7 +171,7 @@ impl ObstaclesView<'_> {
     /// Whether this memory is enough for what a start settled.
     fn check_memory(&self, setup: &Setup) -> Result<(), ObstacleError> {
         let most_columns = self.columns.len().min(self.filling.len()).min(self.bearings.len());
-        let most_rows = self.labels.len().min(self.bins.len() / BINS).min(255);
+        let most_rows = self.labels.len().min(self.intervals.len()).min(255);
         if setup.columns > most_columns {
             return Err(ObstacleError::Columns { needed: setup.columns });
         }
@@ -210,12 +207,13 @@ impl ObstaclesView<'_> {
                 Ground::given(pitch_mrad, roll_mrad, height_mm, rig)
             }
             GroundSource::Searched { .. } if self.state.blind.is_none() => {
-                fit(&cells, self.bins, setup.shift, self.state.carried.ground, config, rig)
+                fit(&cells, self.state.carried.ground, config, rig)
             }
             GroundSource::Searched { .. } => None,
         };
         self.state.carried.update(measured, cells.corners(), rig);
-        let labelling = Labelling::new(cells, self.state.carried.ground, *config, self.bins, setup.narrow);
+        let labelling =
+            Labelling::new(cells, self.state.carried.ground, *config, self.intervals, setup.narrow);
         let columns = self.columns.get_mut(..setup.columns).unwrap_or_default();
         stixels(&labelling, columns, self.labels.get_mut(..setup.rows).unwrap_or_default());
         self.state.is_finished = true;

@@ -3,7 +3,6 @@
 use super::column::{Column, MOST_GAP, StixelKind};
 use super::finder::ObstaclesView;
 use super::ground::Ground;
-use super::interval::Interval;
 use super::setup::Setup;
 use crate::units::Disparity;
 
@@ -74,8 +73,7 @@ impl ObstaclesView<'_> {
         let (mut is_low, mut gap) = (true, 0);
         let beside = ground.beside_256ths(right);
         for row in (0..=row).rev().take_while(|&row| ground_at(row) > needed.ground) {
-            let bins = self.bins.as_chunks().0.get(row);
-            let between = bins.map(|bins| Interval::load(bins).at(beside, cells.farthest));
+            let between = self.intervals.get(row).map(|row| row.at(beside, cells.farthest));
             let lies = |p: i32| between.is_some_and(|between| (between.low..=between.high).contains(&p));
             let answer = answer(row);
             gap = if answer.is_some() { 0 } else { gap + 1 };

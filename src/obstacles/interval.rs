@@ -2,14 +2,14 @@
 
 use super::config::ObstacleConfig;
 use super::ground::Ground;
-use super::v_disparity::BINS;
 
 /// Most that the parallax of something on the ground may be off the ground's, steps.
 const MOST: i64 = 1 << 21;
 
-/// What a row shows of the ground: its parallax, and how far from it an answer is still of the ground.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Interval {
+/// What a row of cells shows of the ground: its parallax, and how far from it an answer is still of the
+/// ground.
+#[derive(Clone, Copy, Default, Debug)]
+pub struct Interval {
     /// Parallax in the column of the principal point, 256ths of a step.
     expected_256ths: i32,
     /// Most above it, steps.
@@ -30,32 +30,20 @@ pub(super) struct Between {
 }
 
 impl Interval {
-    /// Writes the numbers over a row of the v-disparity, which has been read by then.
-    pub(super) fn store(&self, bins: &mut [u8; BINS]) {
-        let numbers = [self.expected_256ths, self.up, self.down, self.close];
-        for (to, number) in bins.as_chunks_mut::<4>().0.iter_mut().zip(numbers) {
-            *to = number.to_le_bytes();
-        }
-    }
+    /// A row before the first frame, all zeros.
+    pub(super) const ZERO: Self = Self { expected_256ths: 0, up: 0, down: 0, close: 0 };
 
-    pub(super) fn load(bins: &[u8; BINS]) -> Self {
-        let number =
-            |place: usize| bins.as_chunks::<4>().0.get(place).map_or(0, |bytes| i32::from_le_bytes(*bytes));
-        Self { expected_256ths: number(0), up: number(1), down: number(2), close: number(3) }
-    }
-
-    /// Whether a parallax is close to the ground's in a row of numbers that were stored, where the ground's
-    /// has so much more than in the column of the principal point.
-    pub(super) fn is_close(bins: &[u8; BINS], parallax: i32, beside_256ths: i32) -> bool {
-        let row = Self::load(bins);
-        (parallax - ((row.expected_256ths + beside_256ths) >> 8)).abs() <= row.close
+    /// Whether a parallax is close to the ground's, where that has so much more than in the column of the
+    /// principal point.
+    pub(super) fn is_close(&self, parallax: i32, beside_256ths: i32) -> bool {
+        (parallax - ((self.expected_256ths + beside_256ths) >> 8)).abs() <= self.close
     }
 
     /// What the row at half-row `halves` shows of a ground, if there is one.
     pub(super) fn new(ground: Option<Ground>, halves: i64, config: &ObstacleConfig, tolerance: i32) -> Self {
         // Without a ground it is beyond all that counts.
         let Some(ground) = ground else {
-            return Self { expected_256ths: -1 << 28, up: 0, down: 0, close: 0 };
+            return Self { expected_256ths: -1 << 28, ..Self::ZERO };
         };
         let expected_256ths = ground.parallax_256ths(halves);
         let (height, at) = (i64::from(ground.height_mm), i64::from(expected_256ths.max(0) >> 8));

@@ -5,9 +5,7 @@ use super::config::{GroundSource, ObstacleConfig};
 use super::ground::{Ground, RigNumbers};
 use crate::units::Disparity;
 
-/// Half the width of the band of the last fit, steps of disparity.
-pub(super) const BAND: i32 = 1 << FINEST;
-/// Exponent of it.
+/// Exponent of half the width of the band of the last fit, steps of disparity.
 const FINEST: u32 = 4;
 /// Exponent of the widest band in which a ground may be found: 2 px.
 const WIDEST: u32 = FINEST + 2;
@@ -18,11 +16,10 @@ const MOST_VARIANCE: i64 = 1 << 28;
 
 /// Half the widths of the bands of a fit, steps of disparity, each half of the one before.
 ///
-/// The search tells a line to a bin, and to a px where bins are narrow. Where no ground was known before, a
-/// band of 2 px is as wide as what a ground that leans by 5 degrees has in most of the columns.
-pub(super) fn bands(shift: u32, is_known: bool) -> impl Iterator<Item = i32> {
+/// Where no ground was known before, a band of 2 px is as wide as what a ground that leans by 5 degrees has
+/// in most of the columns.
+fn bands(is_known: bool) -> impl Iterator<Item = i32> {
     let first = if is_known { WIDEST - 1 } else { WIDEST };
-    let first = if shift > WIDEST { shift.min(9) } else { first };
     (FINEST..=first).rev().map(|exponent| 1 << exponent)
 }
 
@@ -176,12 +173,12 @@ fn at_horizon(s: &Fitted, config: &ObstacleConfig) -> Option<u64> {
 
 /// The plane that a search found, fitted by least squares in bands that get narrower, down to half a px to
 /// each side, as long as at least `fewest` cells are within, with their neighbours above and below.
-/// It is refused if 2 px are too narrow for that, or if these cells reach over less than an eighth of the
-/// rows.
+/// It is refused if the first band is too narrow for that, or if these cells reach over less than an eighth
+/// of the rows.
 pub(super) fn fitted(
     cells: &Cells<'_>,
     plane: Ground,
-    bands: impl Iterator<Item = i32>,
+    is_known: bool,
     config: &ObstacleConfig,
     rig: &RigNumbers,
 ) -> Option<Ground> {
@@ -189,12 +186,12 @@ pub(super) fn fitted(
     let answered = cells.cells.iter().take(all).filter(|d| d.is_some()).count() as i64;
     let fewest = (answered / 16).max(8);
     let (mut plane, mut last) = (plane, None);
-    for band in bands {
+    for band in bands(is_known) {
         let Some(fitted) = refined(cells, &plane, band, fewest, config, rig) else { break };
-        (plane, last) = (fitted.plane, Some((band, fitted)));
+        (plane, last) = (fitted.plane, Some(fitted));
     }
-    let (band, fitted) = last?;
-    let is_good = band <= 1 << WIDEST && fitted.reach >= cells.span() && plane.is_within(&config.ground);
+    let fitted = last?;
+    let is_good = fitted.reach >= cells.span() && plane.is_within(&config.ground);
     let pitch_sigma = rig.pitch_sigma(plane.slope, at_horizon(&fitted, config)?)?;
     is_good.then_some(Ground { pitch_sigma, ..plane })
 }

@@ -7,10 +7,9 @@
 //! ```text
 //! for every row of pixels, `push` in `rows`:
 //!   grid         pixels -> cells of 4 x 5 px, each the nearer of its two largest groups of disparities
-//!   v_disparity  a row of cells -> counts of disparities
 //!   watchdog     rows lost or damaged, cells with an answer
 //! for every frame, `finish` in `finder`:
-//!   v_disparity  counts, cells -> the line of the ground: random pairs of cells
+//!   ransac       cells -> the line of the ground: the one of many pairs of cells that most cells are near to
 //!   least_squares  a line, cells near to it -> the plane of the ground
 //!   ground       the line over frames; height and pitch of the camera, heights above the ground
 //!   stixel       a column of cells -> ground, obstacle or drop, beyond: the labels of the least cost
@@ -56,7 +55,7 @@ mod cells;
 mod grid;
 mod ground;
 mod least_squares;
-mod v_disparity;
+mod ransac;
 mod setup;
 mod interval;
 mod stixel;
@@ -79,6 +78,7 @@ pub use finder::{Obstacles, ObstaclesView};
 pub use grid::Filling;
 pub use ground::Ground;
 pub use held::{FreeSpace, Hysteresis};
+pub use interval::Interval;
 pub use scan::LaserScan;
 pub use sector::{Sector, SectorState, Stixel};
 pub use state::ObstaclesState;

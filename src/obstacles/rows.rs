@@ -1,9 +1,9 @@
 //! Rows of pixels -> rows of cells, and what the watchdog counts of them.
 
+use super::column::Column;
 use super::finder::ObstaclesView;
 use super::grid::{Filling, fill};
 use super::setup::Setup;
-use super::v_disparity::{BINS, count};
 use super::watchdog::Watchdog;
 use crate::imaging::PairMonitor;
 use crate::units::{Disparity, PixelFlags};
@@ -16,7 +16,7 @@ impl ObstaclesView<'_> {
         (self.state.next, self.state.is_finished) = (0, false);
         self.filling.fill(Filling::EMPTY);
         self.cells.fill(Disparity::NONE);
-        self.bins.fill(0);
+        self.columns.fill(Column::EMPTY);
     }
 
     /// Takes what the monitor of the cameras says of this frame, before it is finished.
@@ -72,6 +72,5 @@ impl ObstaclesView<'_> {
             self.state.watchdog.answered += u32::from(cell.is_some());
             *filling = Filling::EMPTY;
         }
-        count(self.bins.chunks_exact_mut(BINS).nth(row).unwrap_or_default(), cells, setup.shift);
     }
 }

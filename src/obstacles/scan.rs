@@ -14,9 +14,9 @@ pub struct LaserScan {
     pub angle_max: f32,
     /// Angle between two ranges, rad.
     pub angle_increment: f32,
-    /// Smallest range that can be measured, m: that of the largest parallax that a disparity has.
+    /// Smallest range that can be measured, m: that of the largest disparity that is searched.
     pub range_min: f32,
-    /// Largest range that is told, m.
+    /// Largest range that is reported, m.
     pub range_max: f32,
     /// Number of ranges that were written.
     pub count: usize,
@@ -40,12 +40,12 @@ impl ObstaclesView<'_> {
         }
         let [first, last] = setup.ends_mrad.map(|end| f32::from(end) / 1000.0);
         let increment = (last - first) / sectors.max(1) as f32;
-        let largest = i32::from(u16::MAX - 1) + setup.offset_steps;
+        let nearest_mm = setup.depth_mm(i32::from(setup.largest.raw()) + setup.offset_steps);
         LaserScan {
             angle_min: -(last - increment / 2.0),
             angle_max: -(first + increment / 2.0),
             angle_increment: increment,
-            range_min: f32::from(setup.depth_mm(largest)) / 1000.0,
+            range_min: f32::from(nearest_mm) / 1000.0,
             range_max: f32::from(self.farthest_mm()) / 1000.0,
             count: ranges.len().min(sectors),
         }

@@ -64,8 +64,8 @@ pub struct Stixel {
     pub sigma_steps: u16,
     /// Depth, mm.
     pub depth_mm: u16,
-    /// Uppermost row of pixels to which the ground is seen from the lowest one on; the picture's height where
-    /// it is not.
+    /// Uppermost row of pixels to which the ground is seen from the lowest one on; the first row below the
+    /// cells where it is not.
     pub seen_row: u16,
 }
 
@@ -238,7 +238,7 @@ impl ObstaclesView<'_> {
         Column { sigma, ..*nearest }
     }
 
-    /// Depth beyond which no distance is told, mm.
+    /// Depth beyond which no distance is reported, mm.
     pub fn farthest_mm(&self) -> u16 {
         let parallax = |setup: Setup| {
             setup.depth_mm(i32::from(ObstacleConfig::FARTHEST_SIGMAS * setup.config.sigma_steps))

@@ -3,7 +3,6 @@
 use super::cells::Cells;
 use super::config::{GroundSource, ObstacleConfig, ObstacleError};
 use super::ground::{Ground, RigNumbers};
-use super::v_disparity::bin_shift;
 use crate::depth::DepthScale;
 use crate::units::Disparity;
 
@@ -19,7 +18,7 @@ pub(super) struct Setup {
     pub(super) columns: usize,
     pub(super) rows: usize,
     pub(super) height: usize,
-    pub(super) shift: u32,
+    pub(super) largest: Disparity,
     /// Columns of cells that end within the largest disparity from the left edge: fewer can be searched
     /// there.
     pub(super) narrow: u16,
@@ -36,7 +35,7 @@ impl Setup {
         columns: 0,
         rows: 0,
         height: 0,
-        shift: 0,
+        largest: Disparity::ZERO,
         narrow: 0,
         ends_mrad: [0; 2],
     };
@@ -68,7 +67,7 @@ impl Setup {
             columns,
             rows,
             height,
-            shift: bin_shift(largest),
+            largest,
             narrow: (largest.raw() / Disparity::ONE).checked_div(config.cell_width.into()).unwrap_or(0),
             ends_mrad: [rig.bearing_mrad(0.0), rig.bearing_mrad(last)],
         })

@@ -64,26 +64,26 @@ pub(super) struct Labelling<'a> {
     pub(super) same_surface: i32,
     /// Number of columns in which fewer disparities than elsewhere can be searched.
     pub(super) narrow: usize,
-    /// An [`Interval`] for each row.
-    intervals: &'a [u8],
+    /// What each row shows.
+    intervals: &'a [Interval],
 }
 
 impl<'a> Labelling<'a> {
-    /// Settles what a frame's rows show, in the memory of its v-disparity.
+    /// Settles what a frame's rows show.
     pub(super) fn new(
         cells: Cells<'a>,
         ground: Option<Ground>,
         config: ObstacleConfig,
-        bins: &'a mut [u8],
+        intervals: &'a mut [Interval],
         narrow: u16,
     ) -> Self {
         let sigma = u32::from(config.sigma_steps);
         let tolerance = 3 * (sigma * sigma + ground.map_or(0, |g| g.variance)).isqrt() as i32;
         let same_surface = (tolerance * 3 / 2).max(Disparity::ONE.into());
-        for (row, bins) in bins.as_chunks_mut().0.iter_mut().enumerate().take(cells.rows) {
-            Interval::new(ground, cells.halves(row), &config, tolerance).store(bins);
+        for (row, interval) in intervals.iter_mut().enumerate().take(cells.rows) {
+            *interval = Interval::new(ground, cells.halves(row), &config, tolerance);
         }
-        Self { cells, ground, config, tolerance, same_surface, narrow: narrow.into(), intervals: bins }
+        Self { cells, ground, config, tolerance, same_surface, narrow: narrow.into(), intervals }
     }
 
     /// Whether a surface stands above the headroom.
@@ -126,7 +126,6 @@ impl<'a> Labelling<'a> {
         let rows = self.cells.rows.min(labels.len());
         let most = self.tolerance.max(1);
         let per_step = (MOST << 16) / most;
-        let intervals = self.intervals.as_chunks().0;
         let beside = self.ground.map_or(0, |ground| ground.beside_256ths(self.cells.right_16ths(column)));
         let mut sums = Sums(0);
         let mut below = None;
@@ -135,14 +134,14 @@ impl<'a> Labelling<'a> {
         // Rows without an answer side by side: here, and the most.
         let (mut gap, mut most_gap) = (0, 0);
         for row in (0..rows).rev() {
-            let (Some(step), Some(bins)) = (labels.get_mut(row), intervals.get(row)) else { break };
+            let (Some(step), Some(interval)) = (labels.get_mut(row), self.intervals.get(row)) else { break };
             let parallax = self.cells.parallax(column, row);
             let breaks =
                 parallax.zip(below).is_some_and(|(p, b): (i32, i32)| (p - b).abs() > self.same_surface);
             below = parallax.or(below);
             gap = if parallax.is_some() { 0 } else { gap + 1 };
             most_gap = gap.max(most_gap);
-            let row = Interval::load(bins).at(beside, self.cells.farthest);
+            let row = interval.at(beside, self.cells.farthest);
             let costs = self.costs(&row, parallax, per_step, most);
             let (stays, cheapest) = sums.advance(if breaks { CHANGE << (8 * OBSTACLE) } else { 0 }, costs);
             *step = from | stays << 2 | if breaks { BREAK } else { 0 };
@@ -218,7 +217,7 @@ impl<'a> Labelling<'a> {
         let Some(ground) = self.ground.filter(|_| is_asked) else { return false };
         let beside = ground.beside_256ths(self.cells.right_16ths(column));
         let below = (usize::from(segment.base) + 2).min(self.cells.rows.saturating_sub(1));
-        let row = self.intervals.as_chunks().0.get(below).map(Interval::load);
+        let row = self.intervals.get(below);
         row.is_some_and(|row| segment.parallax <= row.at(beside, self.cells.farthest).high)
     }
 
@@ -265,11 +264,11 @@ impl<'a> Labelling<'a> {
     /// answer, or of one with an answer that is not close to the ground's.
     fn seen(&self, column: usize, beside: i32, labels: &[u8]) -> u8 {
         let (mut seen, mut gap) = (self.cells.rows as u8, 0);
-        let rows = labels.iter().zip(self.intervals.as_chunks().0).enumerate().take(self.cells.rows);
+        let rows = labels.iter().zip(self.intervals).enumerate().take(self.cells.rows);
         for (row, (&label, interval)) in rows.rev() {
             let is_ground = usize::from(label) == GROUND;
             gap += match self.cells.parallax(column, row) {
-                Some(parallax) if is_ground && Interval::is_close(interval, parallax, beside) => {
+                Some(parallax) if is_ground && interval.is_close(parallax, beside) => {
                     (seen, gap) = (row as u8, 0);
                     continue;
                 }

@@ -24,12 +24,11 @@ fn connected(a: &Column, b: &Column, same_surface: i32) -> bool {
 /// A column whose nearest segment does not, a speck, looks for the next one behind it, twice at most; what is
 /// a speck then is left out.
 pub(super) fn stixels(labelling: &Labelling<'_>, columns: &mut [Column], labels: &mut [u8]) {
-    let same_surface = labelling.same_surface;
     for (x, column) in columns.iter_mut().enumerate() {
         *column = labelling.column(x, i32::MAX, labels);
     }
     for tried in 1..=TRIES {
-        support(columns, labelling, same_surface);
+        support(columns, labelling);
         if tried == TRIES {
             break;
         }
@@ -46,14 +45,14 @@ pub(super) fn stixels(labelling: &Labelling<'_>, columns: &mut [Column], labels:
 }
 
 /// Sums up the cells of each run of connected columns.
-fn support(columns: &mut [Column], labelling: &Labelling<'_>, same_surface: i32) {
+fn support(columns: &mut [Column], labelling: &Labelling<'_>) {
     let config = &labelling.config;
     let area = u32::from(config.cell_width) * u32::from(config.cell_height);
     let (mut rest, mut place) = (columns, 0);
     while let Some(first) = rest.first() {
         let (mut last, mut length, mut cells, mut all, mut standing) = (*first, 0, 0, 0, 0);
         for (x, next) in (place..).zip(&*rest) {
-            if length > 0 && !connected(&last, next, same_surface) {
+            if length > 0 && !connected(&last, next, labelling.same_surface) {
                 break;
             }
             // Where fewer disparities can be searched, answers agree more often by chance.

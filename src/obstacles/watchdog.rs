@@ -11,7 +11,7 @@ use crate::units::PixelFlags;
 #[non_exhaustive]
 #[repr(u8)]
 pub enum BlindReason {
-    /// No frame has been finished since the start.
+    /// No finished frame: none since the start, or the next one is under way.
     // From 1 on, so that no reason is a zero byte: a new finder is all zeros.
     NoFrame = 1,
     /// Too many rows were lost or are damaged.

@@ -4,7 +4,7 @@ use super::support::{Map, floor, rig};
 use std::ops::Range;
 use stereopsis::depth::DepthScale;
 use stereopsis::obstacles::{
-    BlindReason, Column, Decision, DriveConfig, DriveRule, Filling, GroundSource, ObstacleConfig,
+    BlindReason, Column, Decision, DriveConfig, DriveRule, Filling, GroundSource, Interval, ObstacleConfig,
     ObstaclesState, ObstaclesView, StixelKind,
 };
 use stereopsis::units::Disparity;
@@ -96,8 +96,8 @@ fn less_memory_than_was_started_is_blind() {
     let scale = DepthScale::new(&map.rig).expect("a scale");
     let (mut state, mut cells) = (ObstaclesState::new(), [Disparity::NONE; 40 * 24]);
     let (mut filling, mut columns) = ([Filling::default(); 40], [Column::default(); 40]);
-    let (mut bins, mut labels, mut bearings) = ([0; 24 * ObstaclesView::BINS], [0; 24], [0; 40]);
-    let enough = [40 * 24, 40, 24 * ObstaclesView::BINS, 40, 24, 40];
+    let (mut intervals, mut labels, mut bearings) = ([Interval::default(); 24], [0; 24], [0; 40]);
+    let enough = [40 * 24, 40, 24, 40, 24, 40];
     for short in [enough.len()].into_iter().chain(0..enough.len()) {
         let mut lengths = enough;
         lengths.iter_mut().skip(short).take(1).for_each(|length| *length -= 1);
@@ -105,7 +105,7 @@ fn less_memory_than_was_started_is_blind() {
             &mut state,
             &mut cells[..lengths[0]],
             &mut filling[..lengths[1]],
-            &mut bins[..lengths[2]],
+            &mut intervals[..lengths[2]],
             &mut columns[..lengths[3]],
             &mut labels[..lengths[4]],
             &mut bearings[..lengths[5]],

@@ -1,6 +1,7 @@
 //! Worked geometry: poses, heights, bearings, scans, decisions.
 
 use super::support::{Map, floor, rig};
+use stereopsis::geometry::camera::RectifiedRig;
 use stereopsis::obstacles::{
     BlindReason, Decision, DriveConfig, DriveRule, FreeSpace, GroundSource, Hysteresis, ObstacleConfig,
     ObstacleError, SectorState, StixelKind, speed_mm_s,
@@ -46,6 +47,26 @@ fn the_ground_has_the_height_and_pitch_of_the_camera() {
         assert!((lowest(&ground) - lowest(&by_pose)).abs() < 3.2, "{ground:?} {by_pose:?}");
         assert_eq!(f64::from(by_pose.height_mm), (1000.0 * height_m).round());
         assert!((f64::from(by_pose.pitch_rad()) - pitch).abs() < 1e-3, "{by_pose:?}");
+    }
+}
+
+/// Walls to both sides of a street 5 to 8 m wide, which show more of each disparity than the ground does.
+#[test]
+fn the_ground_between_walls_is_the_ground() {
+    let rig = RectifiedRig::new(192.0, 0.4, 159.5, 79.5).expect("a rig");
+    let (f, b) = (f64::from(rig.focal_px()), f64::from(rig.baseline_m()));
+    for (left_m, right_m, pitch) in [(2.5, 2.5, 0.0), (3.0, 2.6, 0.0), (4.0, 3.0, 0.02), (2.5, 4.0, -0.02)] {
+        let map = Map::of(rig, [320, 160], |u, v| {
+            let wall = if u < 159.5 { (159.5 - u) / left_m } else { (u - 159.5) / right_m };
+            Some(floor(&rig, 1.5, pitch, v).unwrap_or(0.0).max(wall * b).max(f * b / 60.0))
+        });
+        let mut finder = map.finder(&ObstacleConfig::default());
+        map.rows(&mut finder, |_| true);
+        assert_eq!(finder.finish(), Ok(()));
+        let plane = finder.as_mut_view().plane().expect("a plane");
+        let off = (f64::from(plane.pitch_rad()) - pitch).to_degrees();
+        assert!(off.abs() < 0.3, "{left_m}, {right_m} m, {pitch} rad: {off} degrees, {plane:?}");
+        assert!((1450..=1550).contains(&plane.height_mm), "{left_m}, {right_m} m, {pitch} rad: {plane:?}");
     }
 }
 
@@ -119,6 +140,8 @@ fn a_box_has_its_distance_bearing_and_height() {
         assert_eq!(range.is_infinite(), !(6..10).contains(&i), "range {i}");
     }
     assert!((ranges[7] - 1.0).abs() < 0.02, "{ranges:?}");
+    // 64 px are searched: 130 * 0.1 / 64 m.
+    assert!((scan.range_min - 0.203).abs() < 1e-3, "{scan:?}");
 }
 
 #[test]
@@ -140,6 +163,12 @@ fn a_table_ends_where_it_ends() {
     let mut rule = DriveRule::new(DriveConfig::default());
     let verdict = rule.decide(&view, 600);
     assert!(matches!(verdict.decision, Decision::Slow(850..1200)), "{verdict:?}");
+    assert_eq!(verdict.nearest, StixelKind::Drop);
+    // Within the next frame nothing of it is left.
+    finder.begin();
+    let verdict = rule.decide(&finder.as_mut_view(), 600);
+    assert_eq!(verdict.decision, Decision::Blind(BlindReason::NoFrame));
+    assert_eq!(verdict.nearest, StixelKind::Nothing);
 }
 
 #[test]

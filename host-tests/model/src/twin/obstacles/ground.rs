@@ -97,33 +97,20 @@ impl Line {
     }
 }
 
-/// Width of a bin of the v-disparity, steps.
-fn bin(scene: &Scene<'_>) -> i128 {
-    let mut width = 1;
-    while i128::from(scene.largest) / width >= 32 {
-        width *= 2;
-    }
-    width
-}
-
-/// How many cells of each row have disparities in the bins of half a px above and below the line, at most
-/// 255 of a bin.
+/// How many cells have parallaxes within three quarters of a px of a line's.
 fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     let [columns, rows] = scene.size();
-    let width = bin(scene);
+    let limit = |parallax: i128, most: i128| parallax.clamp(-most, most);
+    // 256ths of a step.
+    let first = limit(line.lean * scene.right(0) >> 12, 1 << 28);
+    let across = limit((line.lean * i128::from(scene.config.cell_width)) >> 8, 1 << 16);
     let mut score = 0;
-    for row in 0..rows {
-        let parallax = line.upright(scene.halves(row));
-        let steps = parallax - scene.offset;
-        if parallax < scene.farthest() || steps < 0 {
-            continue;
-        }
-        let mut bins = vec![(steps - 16).max(0) / width, (steps + 16) / width];
-        bins.dedup();
-        for bin in bins.into_iter().filter(|bin| *bin < 32) {
-            let inside = |d: &&Option<i128>| d.is_some_and(|d| d / width == bin);
-            let row = &cells[row * columns..(row + 1) * columns];
-            score += row.iter().filter(inside).count().min(255);
+    for row in (0..rows).filter(|&row| line.upright(scene.halves(row)) >= scene.farthest()) {
+        let upright = limit((line.level + line.slope * scene.halves(row) / 2) >> 8, 1 << 28);
+        for column in 0..columns {
+            let expected = (upright + first + across * column as i128) >> 8;
+            let off = cells[row * columns + column].map(|d| d + scene.offset - expected);
+            score += usize::from(off.is_some_and(|off| off.abs() <= 24));
         }
     }
     score
@@ -271,18 +258,15 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         }
     }
     let line = best?.1;
-    // From a bin that is wider than 2 px, or from 2 px, or from 1 px where a ground was known, halved down to
-    // half a px.
-    let first = if carried.is_some() { 32 } else { 64 };
-    let mut band = if bin(scene) > 64 { bin(scene).min(512) } else { first };
+    // From 2 px, or from 1 px where a ground was known, halved down to half a px.
+    let mut band = if carried.is_some() { 32 } else { 64 };
     let (mut line, mut within) = (line, None);
     let answered = cells.iter().flatten().count() as i128;
     let fewest = (answered / 16).max(8);
     while band >= 16 {
         let Some((fitted, reach)) = refined(scene, cells, &line, band, fewest) else { break };
-        (line, within) = (fitted, Some((band, reach)));
+        (line, within) = (fitted, Some(reach));
         band /= 2;
     }
-    let (band, reach) = within?;
-    (band <= 64 && reach >= (rows / 8).max(2) && line.is_allowed(scene)).then_some(line)
+    (within? >= (rows / 8).max(2) && line.is_allowed(scene)).then_some(line)
 }

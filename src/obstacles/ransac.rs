@@ -1,33 +1,18 @@
-//! V-disparity of a frame's cells, and the robust fit of the ground's line (Labayrade, Aubert & Tarel 2002;
-//! Fischler & Bolles 1981).
+//! RANSAC of the ground's line in the v-disparity: parallax over rows (Labayrade, Aubert & Tarel 2002; Fischler
+//! & Bolles 1981).
 
 use super::cells::Cells;
 use super::config::ObstacleConfig;
 use super::ground::{Ground, RigNumbers};
-use super::least_squares::{BAND, bands, fitted};
-use crate::units::Disparity;
+use super::least_squares::fitted;
 
-/// Bins of disparity in a row of the v-disparity.
-pub(super) const BINS: usize = 32;
-/// Pairs of cells that the search draws: with three tenths of the cells on the ground, at least one pair of
-/// those is among them in 99 frames of 100.
+/// Iterations: where 3/10 of the cells are ground, 99 frames of 100 draw a pair of ground cells.
 const DRAWS: usize = 64;
-
-/// Shift from a disparity to its bin, so that the largest disparity is in a bin.
-pub(super) fn bin_shift(largest: Disparity) -> u32 {
-    let bits = u16::BITS - largest.raw().leading_zeros();
-    bits.saturating_sub(BINS.ilog2())
-}
-
-/// Counts a row of cells into its bins, saturating.
-pub(super) fn count(bins: &mut [u8], cells: &[Disparity], shift: u32) {
-    bins.fill(0);
-    for d in cells.iter().filter(|d| d.is_some()) {
-        if let Some(bin) = bins.get_mut(usize::from(d.raw() >> shift)) {
-            *bin = bin.saturating_add(1);
-        }
-    }
-}
+/// How far a cell may be from a line that it is on, steps: three quarters of a px.
+const BAND: u32 = 24;
+/// Most that a parallax counts as, and that it grows by from a cell to the next one, 256ths of a step.
+const MOST: i64 = 1 << 28;
+const MOST_ACROSS: i64 = 1 << 16;
 
 /// A line of the v-disparity that nothing is known of: parallax at row 0 in the column of the principal point
 /// and growth from row to row, steps in 65536ths. It leans as the carried ground does.
@@ -37,24 +22,26 @@ struct Drawn {
     slope: i64,
 }
 
-/// How many cells are near a line, from the v-disparity.
-fn score(cells: &Cells<'_>, bins: &[u8], shift: u32, line: Drawn) -> u32 {
+/// Number of cells within [`BAND`] of a line that leans by `lean` from pixel to pixel of a row.
+fn score(cells: &Cells<'_>, line: Drawn, lean: i64) -> u32 {
     let mut score = 0;
     // Rows are an even number of half-rows apart, so that steps add up to what each row would have.
     let mut exact = line.level.wrapping_add(line.slope.wrapping_mul(cells.halves(0)) / 2);
-    let step = line.slope.wrapping_mul(cells.cell_height);
-    for bins in bins.as_chunks::<BINS>().0 {
-        let parallax = (exact >> 16) as i32;
-        exact = exact.wrapping_add(step);
-        let steps = parallax.wrapping_sub(cells.offset);
-        if parallax < cells.farthest || steps < 0 {
+    let down = line.slope.wrapping_mul(cells.cell_height);
+    // In 256ths of a step: what the first column has beside the principal point's, and each one more.
+    let first = ((lean * cells.right_16ths(0)) >> 12).clamp(-MOST, MOST) as i32;
+    let across = ((lean * cells.cell_width) >> 8).clamp(-MOST_ACROSS, MOST_ACROSS) as i32;
+    for row in cells.cells.chunks_exact(cells.columns.max(1)).take(cells.rows) {
+        let parallax_256ths = (exact >> 8).clamp(-MOST, MOST) as i32;
+        exact = exact.wrapping_add(down);
+        if parallax_256ths >> 8 < cells.farthest {
             continue;
         }
-        let low = (steps - BAND).max(0) as usize >> shift;
-        let high = (steps as usize + BAND as usize) >> shift;
-        score += bins.get(low).map_or(0, |&n| u32::from(n));
-        if high != low {
-            score += bins.get(high).map_or(0, |&n| u32::from(n));
+        let mut expected = parallax_256ths + first;
+        for d in row {
+            let off = i32::from(d.raw()) + cells.offset - (expected >> 8);
+            expected = expected.wrapping_add(across);
+            score += u32::from(d.is_some() && off.unsigned_abs() <= BAND);
         }
     }
     score
@@ -98,22 +85,20 @@ fn through(cells: &Cells<'_>, drawn: [usize; 2], leaning: Option<&Ground>) -> Op
 /// least squares.
 pub(super) fn fit(
     cells: &Cells<'_>,
-    bins: &[u8],
-    shift: u32,
     carried: Option<Ground>,
     config: &ObstacleConfig,
     rig: &RigNumbers,
 ) -> Option<Ground> {
     let all = cells.columns * cells.rows;
-    let (bins, source) = (bins.get(..cells.rows * BINS)?, &config.ground);
+    let source = &config.ground;
     let drawn = |line: Ground| Drawn { level: line.level, slope: line.slope };
     let lean = carried.map_or(0, |ground| i64::from(ground.lean));
-    let mut best = carried.map(|line| (score(cells, bins, shift, drawn(line)), line));
+    let mut best = carried.map(|line| (score(cells, drawn(line), lean), line));
     let (mut state, lowest) = (0x9e37_79b9, cells.halves(cells.rows.saturating_sub(1)));
     for _ in 0..DRAWS {
         let pair = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
         let Some(line) = through(cells, pair, carried.as_ref()) else { continue };
-        let score = score(cells, bins, shift, line);
+        let score = score(cells, line, lean);
         if best.is_none_or(|(most, _)| score > most) {
             // The plane behind a line takes divisions: of the few that are better alone.
             let plane = Ground::from_line(line.level, line.slope, lean, 1, rig)
@@ -121,5 +106,5 @@ pub(super) fn fit(
             best = plane.filter(|plane| plane.is_within(source)).map(|plane| (score, plane)).or(best);
         }
     }
-    fitted(cells, best?.1, bands(shift, carried.is_some()), config, rig)
+    fitted(cells, best?.1, carried.is_some(), config, rig)
 }

@@ -102,7 +102,7 @@ fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     let [columns, rows] = scene.size();
     let limit = |parallax: i128, most: i128| parallax.clamp(-most, most);
     // 256ths of a step.
-    let first = limit(line.lean * scene.right(0) >> 12, 1 << 28);
+    let first = limit((line.lean * scene.right(0)) >> 12, 1 << 28);
     let across = limit((line.lean * i128::from(scene.config.cell_width)) >> 8, 1 << 16);
     let mut score = 0;
     for row in (0..rows).filter(|&row| line.upright(scene.halves(row)) >= scene.farthest()) {

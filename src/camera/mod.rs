@@ -21,7 +21,7 @@
 //! | hardware | implementation |
 //! | --- | --- |
 //! | parallel port, DMA per line | [`LineProducer::begin`] and `finish` in the interrupt; [`HandedLines`] |
-//! | circular DMA over two lines | [`PingPong::take`] into a slot; torn: [`LineProducer::give_back`] |
+//! | circular DMA over two lines | [`PingPong::take`] in both interrupts, into a slot |
 //! | PIO of an RP2040 or RP2350 | DMA as above; two sensors on one program are [`SideBySide`] |
 //! | SPI sensor | `next_line` reads a line; nothing waits |
 //! | FPGA that writes lines into memory | `next_line` copies; the FPGA's counter is [`LineStart::row`] |
@@ -46,8 +46,9 @@
 //! # Writing the application
 //!
 //! Connect a source to a [`pipeline`](crate::pipeline). Two sensors on one trigger pin are
-//! `Triggered<CameraPair<...>>` where they take a pulse; free-running sensors are paired by time stamps
-//! ([`Pairing::TimeStamp`]) and their row skew is measured ([`CameraPair::row_skew`]).
+//! `Triggered<CameraPair<...>>` where they take a pulse and their numbers count pulses; free-running sensors
+//! are paired by time stamps ([`Pairing::TimeStamp`]) and their row skew is measured
+//! ([`CameraPair::row_skew`]).
 
 mod format;
 mod handed;
@@ -56,7 +57,6 @@ mod pair;
 mod ping_pong;
 mod polled;
 mod queue;
-mod row_skew;
 mod sensors;
 mod signal;
 mod source;
@@ -67,12 +67,11 @@ mod trigger;
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handed::HandedLines;
 pub use handoff::{EmptyLine, FilledLine, LineConsumer, LineProducer, LineSlots};
-pub use pair::{CameraPair, PairError, Pairing};
+pub use pair::{CameraPair, PairError, Pairing, RowSkew};
 pub use ping_pong::{Half, PingPong};
 pub use polled::PolledLines;
 #[cfg(feature = "ffi")]
 pub(crate) use queue::Positions;
-pub use row_skew::RowSkew;
 #[cfg(feature = "async")]
 pub use sensors::{AsyncHm01b0, AsyncMt9v034};
 pub use sensors::{

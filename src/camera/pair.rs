@@ -1,8 +1,6 @@
 //! A stereo source of two line sources: frames paired by sequence number or time stamp, rows checked.
 
-use super::{
-    CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, RowSkew, StereoSource,
-};
+use super::{CameraError, ErrorType, FrameStart, LineFault, LineFormat, LineSource, LineStart, StereoSource};
 use core::fmt;
 
 /// Two rectified cameras read row by row: both lines have one row number, and time stamps within the row-skew
@@ -26,8 +24,6 @@ pub struct CameraPair<L, R> {
     /// Lines that a camera gives up before the next one.
     left_behind: u16,
     right_behind: u16,
-    /// How many frames fewer than the right camera the left one has counted.
-    missed: u32,
     /// The sequence numbers of the frames that the cameras started last.
     before: [u32; 2],
     /// The newest time stamps of their frames, microseconds.
@@ -39,14 +35,37 @@ pub struct CameraPair<L, R> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Pairing {
-    /// Equal sequence numbers: cameras that count the pulses of one trigger, or their own frames. Where the
-    /// camera that is behind has no newer frame ([`CameraError::TimedOut`]), it has missed a pulse: that
-    /// start fails, and from then on the pair takes the difference of their numbers for none.
+    /// Equal sequence numbers: cameras that count the pulses of one trigger. Numbers that count frames do not
+    /// do: once a camera has missed a pulse, equal numbers are of different pulses.
     #[default]
     Sequence,
     /// Time stamps within the bound on row skew: cameras that run freely, stamped by one clock. The pair's
     /// sequence number is the left camera's.
     TimeStamp,
+}
+
+/// Row skew of a frame so far: how much later than the left camera the right one read out its rows.
+#[derive(Clone, Copy, PartialEq, Eq, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct RowSkew {
+    /// Number of rows measured; with none the other fields are 0.
+    pub rows: u16,
+    /// Least skew, microseconds; negative where the right camera was first.
+    pub least_us: i64,
+    /// Largest skew, microseconds.
+    pub most_us: i64,
+}
+
+impl RowSkew {
+    fn add(&mut self, left_us: u64, right_us: u64) {
+        // Stamps near 2^64 us are 584 000 years: the difference fits.
+        let skew = right_us.wrapping_sub(left_us) as i64;
+        let first = self.rows == 0;
+        self.least_us = if first { skew } else { self.least_us.min(skew) };
+        self.most_us = if first { skew } else { self.most_us.max(skew) };
+        self.rows = self.rows.saturating_add(1);
+    }
 }
 
 /// Why two cameras delivered no pair of lines.
@@ -134,7 +153,6 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
             skew,
             left_behind: 0,
             right_behind: 0,
-            missed: 0,
             before: [0; 2],
             newest_us: [0; 2],
         })
@@ -171,21 +189,11 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
         let (left, right) = (&left.start, &right.start);
         match self.pairing {
             // The counters wrap: the one behind is the one that reaches the other in fewer steps.
-            Pairing::Sequence => {
-                let left = left.sequence.wrapping_add(self.missed);
-                i64::from(left.wrapping_sub(right.sequence) as i32)
-            }
+            Pairing::Sequence => i64::from(left.sequence.wrapping_sub(right.sequence) as i32),
             Pairing::TimeStamp => {
                 let apart = left.timestamp_us.wrapping_sub(right.timestamp_us) as i64;
                 if apart.unsigned_abs() <= u64::from(self.max_row_skew_us) { 0 } else { apart }
             }
-        }
-    }
-
-    /// Takes the frames of both for the same one when the camera that is behind has no newer one.
-    fn count_anew<E>(&mut self, error: &CameraError<E>, left: &Started, right: &Started) {
-        if matches!(error, CameraError::TimedOut) && !left.is_stale && !right.is_stale {
-            self.missed = right.start.sequence.wrapping_sub(left.start.sequence);
         }
     }
 
@@ -225,14 +233,12 @@ impl<L: LineSource, R: LineSource> StereoSource for CameraPair<L, R> {
 
     fn start_frame(&mut self) -> Paired<FrameStart, L, R> {
         (self.skew, self.left_behind, self.right_behind) = (RowSkew::default(), 0, 0);
-        // Both are asked, whatever the first one says: they stay in step.
-        let (left, right) = (self.start_left(), self.start_right());
-        let (mut left, mut right) = (left?, right?);
+        let (mut left, mut right) = (self.start_left()?, self.start_right()?);
         for _ in 0..Self::MAX_CATCH_UP {
             match self.apart(&left, &right) {
                 0 => break,
-                1.. => right = self.start_right().inspect_err(|e| self.count_anew(e, &left, &right))?,
-                _ => left = self.start_left().inspect_err(|e| self.count_anew(e, &left, &right))?,
+                1.. => right = self.start_right()?,
+                _ => left = self.start_left()?,
             }
         }
         let apart = self.apart(&left, &right);

@@ -6,13 +6,12 @@ use embedded_hal::digital::{ErrorType as PinErrorType, OutputPin};
 use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::delay::{CheckedDelay, NoopDelay, Transaction as DelayTransaction};
 use embedded_hal_mock::eh1::digital::{Mock as PinMock, State, Transaction as PinTransaction};
-use std::cell::{Cell, RefCell};
-use std::collections::VecDeque;
+use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
 use stereopsis::camera::{
-    CameraError, CameraPair, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PairError,
-    StereoSource, TriggerError, Triggered,
+    CameraError, ErrorType, FrameStart, LineFormat, LineStart, PairError, StereoSource, TriggerError,
+    Triggered,
 };
 use stereopsis_host::scene::{Scene, SceneCamera};
 
@@ -139,110 +138,4 @@ fn the_pulse_is_over_before_the_frame_is_waited_for() {
     let mut triggered = Triggered::new(source, LoggedPin(log.clone()), LoggedDelay(log.clone()), 3);
     triggered.start_frame().expect("nothing can fail");
     assert_eq!(*log.borrow(), ["high", "wait", "low", "frame"]);
-}
-
-/// A sensor on the trigger pin. Its frames wait until they are asked for.
-struct Pulsed<'a> {
-    pulses: &'a Cell<u32>,
-    /// Pulses that there were when it was asked last.
-    seen: u32,
-    /// Pulses of which it makes no frame.
-    misses: std::ops::Range<u32>,
-    /// Whether its numbers are those of its own frames, or of the pulses.
-    counts_frames: bool,
-    frames: u32,
-    waiting: VecDeque<FrameStart>,
-    pulse: u32,
-}
-
-impl ErrorType for Pulsed<'_> {
-    type Error = Infallible;
-}
-
-impl LineSource for Pulsed<'_> {
-    fn format(&self) -> LineFormat {
-        LineFormat { height: 1, ..SMALL }
-    }
-
-    fn start_frame(&mut self) -> Result<FrameStart, CameraError<Infallible>> {
-        while self.seen < self.pulses.get() {
-            self.seen += 1;
-            if !self.misses.contains(&self.seen) {
-                self.frames += 1;
-                let sequence = if self.counts_frames { self.frames } else { self.seen };
-                let timestamp_us = u64::from(self.seen) * 1000;
-                self.waiting.push_back(FrameStart { sequence, timestamp_us, exposure_us: 0 });
-            }
-        }
-        let frame = self.waiting.pop_front().ok_or(CameraError::TimedOut)?;
-        self.pulse = (frame.timestamp_us / 1000) as u32;
-        Ok(frame)
-    }
-
-    fn next_line(&mut self, _line: &mut [u8]) -> Result<LineStart, CameraError<Infallible>> {
-        Ok(LineStart { row: 0, timestamp_us: u64::from(self.pulse) * 1000 + 7 })
-    }
-}
-
-struct Counted<'a>(&'a Cell<u32>);
-
-impl PinErrorType for Counted<'_> {
-    type Error = Infallible;
-}
-
-impl OutputPin for Counted<'_> {
-    fn set_high(&mut self) -> Result<(), Infallible> {
-        self.0.set(self.0.get() + 1);
-        Ok(())
-    }
-
-    fn set_low(&mut self) -> Result<(), Infallible> {
-        Ok(())
-    }
-}
-
-#[test]
-fn a_sensor_that_misses_pulses_is_paired_again() {
-    // Which pulses each misses, what its numbers are of, and which frames fail.
-    let table = [
-        (3..4, 9..9, true, vec![3, 4]),
-        (9..9, 3..4, true, vec![3, 4]),
-        (3..5, 9..9, true, vec![3, 4, 5]),
-        (3..5, 4..6, true, vec![3, 4, 5]),
-        (3..4, 8..9, true, vec![3, 4, 8, 9]),
-        (1..2, 9..9, true, vec![1, 2]),
-        // Numbers of pulses need nothing.
-        (3..4, 9..9, false, vec![3]),
-        (9..9, 3..5, false, vec![3, 4]),
-    ];
-    for (left, right, counts_frames, expected) in table {
-        let pulses = Cell::new(0);
-        let camera = |misses| Pulsed {
-            pulses: &pulses,
-            seen: 0,
-            misses,
-            counts_frames,
-            frames: 0,
-            waiting: VecDeque::new(),
-            pulse: 0,
-        };
-        let words = format!("{left:?} {right:?} {counts_frames}");
-        let source = CameraPair::new(camera(left), camera(right), 5).expect("the formats are equal");
-        let mut triggered = Triggered::new(source, Counted(&pulses), NoopDelay::new(), 10);
-        let mut failed = Vec::new();
-        for pulse in 1..=14_u32 {
-            match triggered.start_frame() {
-                Ok(_) => {
-                    let line = triggered.next_lines(&mut [0; 4], &mut [0; 4]);
-                    let timestamp_us = u64::from(pulse) * 1000 + 7;
-                    assert_eq!(line, Ok(LineStart { row: 0, timestamp_us }), "{words}");
-                }
-                Err(error) => {
-                    assert_eq!(error, CameraError::TimedOut, "{words}");
-                    failed.push(pulse);
-                }
-            }
-        }
-        assert_eq!(failed, expected, "{words}");
-    }
 }

@@ -145,6 +145,10 @@ fn check(args: &CheckArgs) -> Result<(), Failure> {
 
 fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let place = Place::of("--out", &args.out)?;
+    let is_xml = args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
+    if is_xml && matches!(args.to, Format::Opencv) {
+        return Err(Failure::usage("--out: --to opencv writes YAML; name it .yml"));
+    }
     let calibration = open(&args.file)?;
     let rig = &calibration.rig;
     let name = calibration.path.file_name().unwrap_or_default().to_string_lossy().into_owned();

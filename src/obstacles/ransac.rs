@@ -8,11 +8,16 @@ use super::least_squares::fitted;
 
 /// Iterations: where 3/10 of the cells are ground, 99 frames of 100 draw a pair of ground cells.
 const DRAWS: usize = 64;
+/// Iterations where a ground is carried, which the lines drawn compete with.
+const CARRIED_DRAWS: usize = 16;
 /// How far a cell may be from a line that it is on, steps: three quarters of a px.
 const BAND: u32 = 24;
-/// Most that a parallax counts as, and that it grows by from a cell to the next one, 256ths of a step.
+/// Columns of cells that are counted, spread over a row, at most.
+const MOST_COLUMNS: usize = 16;
+/// Most that a parallax counts as, and that it changes by from a row or a column to the next one, 256ths of a
+/// step.
 const MOST: i64 = 1 << 28;
-const MOST_ACROSS: i64 = 1 << 16;
+const MOST_STEP: i64 = 1 << 22;
 
 /// A line of the v-disparity that nothing is known of: parallax at row 0 in the column of the principal point
 /// and growth from row to row, steps in 65536ths. It leans as the carried ground does.
@@ -22,29 +27,37 @@ struct Drawn {
     slope: i64,
 }
 
-/// Number of cells within [`BAND`] of a line that leans by `lean` from pixel to pixel of a row.
-fn score(cells: &Cells<'_>, line: Drawn, lean: i64) -> u32 {
-    let mut score = 0;
-    // Rows are an even number of half-rows apart, so that steps add up to what each row would have.
-    let mut exact = line.level.wrapping_add(line.slope.wrapping_mul(cells.halves(0)) / 2);
-    let down = line.slope.wrapping_mul(cells.cell_height);
-    // In 256ths of a step: what the first column has beside the principal point's, and each one more.
-    let first = ((lean * cells.right_16ths(0)) >> 12).clamp(-MOST, MOST) as i32;
-    let across = ((lean * cells.cell_width) >> 8).clamp(-MOST_ACROSS, MOST_ACROSS) as i32;
-    for row in cells.cells.chunks_exact(cells.columns.max(1)).take(cells.rows) {
-        let parallax_256ths = (exact >> 8).clamp(-MOST, MOST) as i32;
-        exact = exact.wrapping_add(down);
-        if parallax_256ths >> 8 < cells.farthest {
-            continue;
+/// Number of cells within [`BAND`] of a line that leans by `lean` from pixel to pixel of a row, in columns spread
+/// over the picture; `None` where it is at most `most`.
+fn score(cells: &Cells<'_>, line: Drawn, lean: i64, most: u32) -> Option<u32> {
+    let stride = cells.columns.div_ceil(MOST_COLUMNS).max(1);
+    // In 256ths of a step: the parallax of the lowest row, how much less each row above it has, what the first
+    // column has beside the principal point's, and each one that is counted more.
+    let limited = |number: i64, most: i64| number.max(-most).min(most) as i32;
+    let lowest = line.level + line.slope * cells.halves(cells.rows.saturating_sub(1)) / 2;
+    let up = limited((line.slope * cells.cell_height) >> 8, MOST_STEP);
+    let first = limited((lean * cells.right_16ths(0)) >> 12, MOST);
+    let across = limited((lean * cells.cell_width * stride as i64) >> 8, MOST_STEP);
+    let mut parallax = limited(lowest >> 8, MOST);
+    let least = cells.farthest << 8;
+    let to_band = first.wrapping_sub(cells.offset.wrapping_add(BAND as i32) << 8);
+    let (mut score, mut left) = (0, (cells.rows * MOST_COLUMNS) as u32);
+    for row in (0..cells.rows).rev() {
+        // The rows above have less parallax still, and too few cells make no difference.
+        if parallax < least || score + left <= most {
+            break;
         }
-        let mut expected = parallax_256ths + first;
-        for d in row {
-            let off = i32::from(d.raw()) + cells.offset - (expected >> 8);
-            expected = expected.wrapping_add(across);
-            score += u32::from(d.is_some() && off.unsigned_abs() <= BAND);
+        let mut low = parallax.wrapping_add(to_band);
+        let row = cells.cells.get(row * cells.columns..(row + 1) * cells.columns).unwrap_or_default();
+        for d in row.iter().step_by(stride) {
+            // The number of no answer is no parallax that a line has in a picture.
+            score += u32::from((i32::from(d.raw()) - (low >> 8)) as u32 <= 2 * BAND);
+            low = low.wrapping_add(across);
         }
+        parallax -= up;
+        left -= MOST_COLUMNS as u32;
     }
-    score
+    (score > most).then_some(score)
 }
 
 /// Xorshift (Marsaglia 2003).
@@ -91,20 +104,22 @@ pub(super) fn fit(
 ) -> Option<Ground> {
     let all = cells.columns * cells.rows;
     let source = &config.ground;
-    let drawn = |line: Ground| Drawn { level: line.level, slope: line.slope };
     let lean = carried.map_or(0, |ground| i64::from(ground.lean));
-    let mut best = carried.map(|line| (score(cells, drawn(line), lean), line));
+    let mut best = carried;
+    let mut most = carried
+        .map_or(0, |line| score(cells, Drawn { level: line.level, slope: line.slope }, lean, 0).unwrap_or(0));
     let (mut state, lowest) = (0x9e37_79b9, cells.halves(cells.rows.saturating_sub(1)));
-    for _ in 0..DRAWS {
+    for _ in 0..if carried.is_some() { CARRIED_DRAWS } else { DRAWS } {
         let pair = [(); 2].map(|()| ((u64::from(random(&mut state)) * all as u64) >> 32) as usize);
         let Some(line) = through(cells, pair, carried.as_ref()) else { continue };
-        let score = score(cells, line, lean);
-        if best.is_none_or(|(most, _)| score > most) {
-            // The plane behind a line takes divisions: of the few that are better alone.
-            let plane = Ground::from_line(line.level, line.slope, lean, 1, rig)
-                .and_then(|plane| plane.bounded(source, lowest, rig));
-            best = plane.filter(|plane| plane.is_within(source)).map(|plane| (score, plane)).or(best);
+        let Some(score) = score(cells, line, lean, most) else { continue };
+        // The plane behind a line takes divisions: of the few that are better alone.
+        let plane = Ground::from_line(line.level, line.slope, lean, 1, rig)
+            .and_then(|plane| plane.bounded(source, lowest, rig))
+            .filter(|plane| plane.is_within(source));
+        if plane.is_some() {
+            (best, most) = (plane, score);
         }
     }
-    fitted(cells, best?.1, carried.is_some(), config, rig)
+    fitted(cells, best?, carried.is_some(), config, rig)
 }

@@ -97,20 +97,28 @@ impl Line {
     }
 }
 
-/// How many cells have parallaxes within three quarters of a px of a line's.
+/// How many cells of at most 16 columns, as far apart from each other, have parallaxes within three quarters of a
+/// px of a line's. No answer counts as its number.
 fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     let [columns, rows] = scene.size();
-    let limit = |parallax: i128, most: i128| parallax.clamp(-most, most);
+    let stride = columns.div_ceil(16);
+    let limit = |number: i128, most: i128| number.clamp(-most, most);
     // 256ths of a step.
+    let lowest = limit((line.level + line.slope * scene.halves(rows - 1) / 2) >> 8, 1 << 28);
+    let up = limit((line.slope * i128::from(scene.config.cell_height)) >> 8, 1 << 22);
     let first = limit((line.lean * scene.right(0)) >> 12, 1 << 28);
-    let across = limit((line.lean * i128::from(scene.config.cell_width)) >> 8, 1 << 16);
+    let cell_width = i128::from(scene.config.cell_width);
+    let across = limit((line.lean * cell_width * stride as i128) >> 8, 1 << 22);
     let mut score = 0;
-    for row in (0..rows).filter(|&row| line.upright(scene.halves(row)) >= scene.farthest()) {
-        let upright = limit((line.level + line.slope * scene.halves(row) / 2) >> 8, 1 << 28);
-        for column in 0..columns {
-            let expected = (upright + first + across * column as i128) >> 8;
-            let off = cells[row * columns + column].map(|d| d + scene.offset - expected);
-            score += usize::from(off.is_some_and(|off| off.abs() <= 24));
+    for row in 0..rows {
+        let parallax = lowest - up * (rows - 1 - row) as i128;
+        if parallax < scene.farthest() << 8 {
+            continue;
+        }
+        for column in (0..columns).step_by(stride) {
+            let expected = (parallax + first + across * (column / stride) as i128) >> 8;
+            let d = cells[row * columns + column].unwrap_or(65_535);
+            score += usize::from((d + scene.offset - expected).abs() <= 24);
         }
     }
     score
@@ -240,7 +248,7 @@ fn through(
 /// The ground that a frame shows, or that its pose gives.
 pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> Option<Line> {
     let [columns, rows] = scene.size();
-    let mut best = carried.map(|line| (score(scene, cells, &line), line));
+    let (mut best, mut most) = (carried, carried.map_or(0, |line| score(scene, cells, &line)));
     let mut state: u32 = 0x9e37_79b9;
     let mut draw = || {
         state ^= state.wrapping_shl(13);
@@ -248,16 +256,16 @@ pub fn fit(scene: &Scene<'_>, cells: &[Option<i128>], carried: Option<Line>) -> 
         state ^= state.wrapping_shl(5);
         (u64::from(state) * (columns * rows) as u64 / (1 << 32)) as usize
     };
-    for _ in 0..64 {
+    for _ in 0..if carried.is_some() { 16 } else { 64 } {
         let drawn = [draw(), draw()];
         let Some(line) = through(scene, cells, drawn, carried) else { continue };
         let score = score(scene, cells, &line);
         let bounded = line.bounded(scene, scene.halves(rows - 1)).filter(|line| line.is_allowed(scene));
-        if best.is_none_or(|(most, _)| score > most) {
-            best = bounded.map(|line| (score, line)).or(best);
+        if score > most && bounded.is_some() {
+            (best, most) = (bounded, score);
         }
     }
-    let line = best?.1;
+    let line = best?;
     // From 2 px, or from 1 px where a ground was known, halved down to half a px.
     let mut band = if carried.is_some() { 32 } else { 64 };
     let (mut line, mut within) = (line, None);

@@ -1,5 +1,5 @@
-//! RANSAC of the ground's line in the v-disparity: parallax over rows (Labayrade, Aubert & Tarel 2002; Fischler
-//! & Bolles 1981).
+//! RANSAC of the ground's line in the v-disparity: parallax over rows (Labayrade, Aubert & Tarel 2002;
+//! Fischler & Bolles 1981).
 
 use super::cells::Cells;
 use super::config::ObstacleConfig;
@@ -27,12 +27,12 @@ struct Drawn {
     slope: i64,
 }
 
-/// Number of cells within [`BAND`] of a line that leans by `lean` from pixel to pixel of a row, in columns spread
-/// over the picture; `None` where it is at most `most`.
+/// Number of cells within [`BAND`] of a line that leans by `lean` from pixel to pixel of a row, in columns
+/// spread over the picture; `None` where it is at most `most`.
 fn score(cells: &Cells<'_>, line: Drawn, lean: i64, most: u32) -> Option<u32> {
     let stride = cells.columns.div_ceil(MOST_COLUMNS).max(1);
-    // In 256ths of a step: the parallax of the lowest row, how much less each row above it has, what the first
-    // column has beside the principal point's, and each one that is counted more.
+    // In 256ths of a step: the parallax of the lowest row, how much less each row above it has, what the
+    // first column has beside the principal point's, and each one that is counted more.
     let limited = |number: i64, most: i64| number.max(-most).min(most) as i32;
     let lowest = line.level + line.slope * cells.halves(cells.rows.saturating_sub(1)) / 2;
     let up = limited((line.slope * cells.cell_height) >> 8, MOST_STEP);

@@ -97,8 +97,8 @@ impl Line {
     }
 }
 
-/// How many cells of at most 16 columns, as far apart from each other, have parallaxes within three quarters of a
-/// px of a line's. No answer counts as its number.
+/// How many cells of at most 16 columns, as far apart from each other, have parallaxes within three quarters
+/// of a px of a line's. No answer counts as its number.
 fn score(scene: &Scene<'_>, cells: &[Option<i128>], line: &Line) -> usize {
     let [columns, rows] = scene.size();
     let stride = columns.div_ceil(16);

@@ -164,9 +164,6 @@ fn a_rig_is_calibrated_checked_and_converted() {
     let (exchanged, none) = (file("exchanged.yml"), file("none.bin"));
     let convert = ["calib", "convert", "--calib", &exchanged, "--to", "record", "--out", &none];
     bench.refused(&convert.map(str::to_owned), "exchanged.yml: the second camera stands left of the first");
-    let (good, xml) = (file("stereo.yml"), file("none.xml"));
-    let convert = ["calib", "convert", "--calib", &good, "--to", "opencv", "--out", &xml];
-    bench.refused(&convert.map(str::to_owned), "--to opencv writes YAML");
     bench.refused(&["calib", "check", "--calib", &exchanged].map(str::to_owned), "swapped");
 
     // Other lenses, from the same images.

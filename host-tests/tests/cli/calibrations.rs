@@ -30,6 +30,9 @@ fn a_calibration_of_another_size_is_said() {
     assert!(check.contains("warning: its principal point"), "{check}");
     bench.put("calib.txt", calibration(96, 48).as_bytes());
     bench.refused(&["calib", "check", "--calib", &calib, "--size", &size], "width says 96");
+    let xml = bench.path("none.xml").display().to_string();
+    let convert = ["calib", "convert", "--calib", &calib, "--to", "opencv", "--out", &xml];
+    bench.refused(&convert, "--to opencv writes YAML");
 }
 
 #[test]

@@ -8,6 +8,7 @@ mod faults;
 mod flight;
 mod geometry;
 mod given;
+mod ground;
 mod scenes;
 mod sides;
 mod support;

@@ -9,6 +9,8 @@ const MOST: i64 = 1 << 21;
 /// What a row of cells shows of the ground: its parallax, and how far from it an answer is still of the
 /// ground.
 #[derive(Clone, Copy, Default, Debug)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Interval {
     /// Parallax in the column of the principal point, 256ths of a step.
     expected_256ths: i32,

@@ -69,13 +69,13 @@ pub enum StructureError {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum ViewState {
-    /// Its pose has not been looked for yet.
+    /// The view's pose has not been looked for yet.
     Unknown,
-    /// Its pose is known.
+    /// The view's pose is known.
     Registered,
     /// The view sees fewer than six points that are known.
     TooFew,
-    /// Its observations agree on no pose.
+    /// The view's observations agree on no pose.
     NoAgreement,
 }
 
@@ -85,9 +85,9 @@ pub enum ViewState {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub enum PointState {
-    /// Fewer than two views of known pose see it.
+    /// Fewer than two views of known pose see the point.
     Unknown,
-    /// Its position is known.
+    /// The point's position is known.
     Triangulated,
     /// The observations are nearly parallel: the point is far away, or at infinity.
     Far,

@@ -115,7 +115,7 @@
  * columns and `rows` rows of cells.
  */
 #define STEREOPSIS_OBSTACLES_BYTES(columns, rows) \
-  ((size_t)272 + (size_t)30 * (columns) + (size_t)33 * (rows) + \
+  ((size_t)272 + (size_t)30 * (columns) + (size_t)17 * (rows) + \
    (size_t)2 * (columns) * (rows))
 
 

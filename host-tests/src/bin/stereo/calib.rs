@@ -147,7 +147,7 @@ fn convert(args: &ConvertArgs) -> Result<(), Failure> {
     let place = Place::of("--out", &args.out)?;
     let is_xml = args.out.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("xml"));
     if is_xml && matches!(args.to, Format::Opencv) {
-        return Err(Failure::usage("--out: --to opencv writes YAML; name it .yml"));
+        return Err(Failure::usage("--out: --to opencv writes YAML, not XML; name another"));
     }
     let calibration = open(&args.file)?;
     let rig = &calibration.rig;

@@ -94,8 +94,8 @@ fn through(cells: &Cells<'_>, drawn: [usize; 2], leaning: Option<&Ground>) -> Op
     Some(Drawn { level, slope })
 }
 
-/// The ground of a frame: the line of most cells of [`DRAWS`] that are drawn and the carried one, fitted by
-/// least squares.
+/// The ground of a frame: of the lines that are drawn and the carried one, the line of most cells, fitted by
+/// least squares. [`DRAWS`] pairs are drawn, [`CARRIED_DRAWS`] where a ground is carried.
 pub(super) fn fit(
     cells: &Cells<'_>,
     carried: Option<Ground>,

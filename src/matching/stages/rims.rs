@@ -92,8 +92,8 @@ impl Row<'_> {
         for begin in (0..self.answers.len()).step_by(GROUP) {
             let columns = begin..self.answers.len().min(begin + GROUP);
             nearest = if self.none_begins(begin) {
-                let mut answers = part(self.answers, columns).iter().rev().map(number);
-                answers.find(|&answer| answer >= 0).map_or(nearest, nearest_behind)
+                let mut answers = part(self.answers, columns).iter().rev().map(Cell::get);
+                answers.find(|answer| answer.is_some()).map_or(nearest, nearest_behind)
             } else {
                 self.refuse(columns, RIGHT, u32::MAX, nearest)
             };
@@ -129,15 +129,15 @@ impl Row<'_> {
         let mut empty = 0;
         while let Some(answer) = answers.get(x) {
             keep_loop();
-            let here = number(answer);
-            if here < 0 {
-                empty += 1;
-                nearest = if empty == far_when_empty { -1 } else { nearest };
-            } else {
-                if here > nearest && !self.has_edge(first + x) {
+            let here = answer.get();
+            if here.is_some() {
+                if i32::from(here.raw()) > nearest && !self.has_edge(first + x) {
                     self.refuse_rim(first + x, way);
                 }
                 (nearest, empty) = (nearest_behind(here), 0);
+            } else {
+                empty += 1;
+                nearest = if empty == far_when_empty { -1 } else { nearest };
             }
             x = x.wrapping_add(way);
         }
@@ -188,16 +188,10 @@ impl Row<'_> {
     }
 }
 
-/// An answer as a number. No answer is less than any: -1.
-#[inline(always)]
-fn number(answer: &Cell<Disparity>) -> i32 {
-    i32::from(answer.get().raw().wrapping_add(1)) - 1
-}
-
 /// What an answer behind this one has to be nearer than to begin a surface.
 #[inline(always)]
-fn nearest_behind(answer: i32) -> i32 {
-    answer + i32::from(FatteningWork::TOLERANCE)
+fn nearest_behind(answer: Disparity) -> i32 {
+    i32::from(answer.raw()) + i32::from(FatteningWork::TOLERANCE)
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 //! (`faults`).
 
 mod decisions;
+mod drives;
 mod evidence;
 mod faults;
 mod flight;

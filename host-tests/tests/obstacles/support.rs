@@ -80,13 +80,13 @@ pub fn floor(rig: &RectifiedRig, height_m: f64, pitch_rad: f64, v: f64) -> Optio
 
 /// A pipeline before a finder; that of `block` where no method is named.
 pub struct Cameras<M: Method = Block> {
-    pipeline: Box<Pipeline<M, 160, 32>>,
+    pipeline: Box<Pipeline<M, 320, 128>>,
     pub finder: Box<Finder>,
     monitor: PairMonitor,
 }
 
 impl<M: Method> Cameras<M> {
-    /// Cameras that see a scene of at most 160 px and 32 disparities, and default limits.
+    /// Cameras that see a scene of at most 320 px and 128 disparities, and default limits.
     pub fn new(scene: &Scene) -> Self {
         Self::of(scene, &ObstacleConfig::default(), false)
     }

@@ -8,8 +8,10 @@ use core::convert::Infallible;
 /// The line source that an interrupt feeds through [`LineSlots`](super::LineSlots).
 ///
 /// `wait` is called while no line waits, to sleep until the next interrupt. It returns false when the time is
-/// over, which it must do eventually: [`CameraError::TimedOut`]. A line lost on the way shows in the next
-/// one's row. A line with another [`FrameStart`] than the one before it begins a frame.
+/// over, which it must do eventually: [`CameraError::TimedOut`], unless a line has come by then. An interrupt
+/// may come after the look for a line and before the sleep, which then lasts until the next one: a sleep that
+/// an event ends (`WFE` on Arm, with `SEV` in the interrupt) misses none. A line lost on the way shows in the
+/// next one's row. A line with another [`FrameStart`] than the one before it begins a frame.
 pub struct HandedLines<'a, 'b, F, const B: usize> {
     consumer: LineConsumer<'a, 'b, B>,
     format: LineFormat,
@@ -43,14 +45,17 @@ impl<'a, 'b, F: FnMut() -> bool, const B: usize> HandedLines<'a, 'b, F, B> {
 
     /// Takes the next line of any frame.
     fn take(&mut self) -> Result<FilledLine<'b, B>, CameraError<Infallible>> {
+        let mut is_in_time = true;
         loop {
             if let Some(line) = self.pending.take().or_else(|| self.consumer.next()) {
                 self.overruns = line.overruns();
                 return Ok(line);
             }
-            if !(self.wait)() {
+            if !is_in_time {
                 return Err(CameraError::TimedOut);
             }
+            // A line that comes while the time ends has come.
+            is_in_time = (self.wait)();
         }
     }
 }

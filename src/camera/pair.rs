@@ -203,6 +203,22 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
     }
 }
 
+/// Skips the lines that a camera is behind. Those left after an error are skipped the next time.
+fn skip<S: LineSource>(
+    source: &mut S,
+    behind: &mut u16,
+    line: &mut [u8],
+) -> Result<(), CameraError<S::Error>> {
+    while *behind > 0 {
+        match source.next_line(line) {
+            // A line that is lost need not be skipped.
+            Ok(_) | Err(CameraError::LineLost(_)) => *behind -= 1,
+            Err(error) => return Err(error),
+        }
+    }
+    Ok(())
+}
+
 /// A camera's frame, and whether it is the one before once more.
 struct Started {
     start: FrameStart,
@@ -260,12 +276,8 @@ impl<L: LineSource, R: LineSource> StereoSource for CameraPair<L, R> {
         if left.len().min(right.len()) < needed {
             return Err(CameraError::BufferTooShort { needed });
         }
-        for _ in 0..core::mem::take(&mut self.left_behind) {
-            self.left.next_line(left).map_err(|e| e.map_hardware(PairError::Left))?;
-        }
-        for _ in 0..core::mem::take(&mut self.right_behind) {
-            self.right.next_line(right).map_err(|e| e.map_hardware(PairError::Right))?;
-        }
+        skip(&mut self.left, &mut self.left_behind, left).map_err(|e| e.map_hardware(PairError::Left))?;
+        skip(&mut self.right, &mut self.right_behind, right).map_err(|e| e.map_hardware(PairError::Right))?;
         // Both are asked, whatever the first one says: they stay in step.
         let (l, r) = (self.left.next_line(left), self.right.next_line(right));
         let l = l.map_err(|e| e.map_hardware(PairError::Left))?;

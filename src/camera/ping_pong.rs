@@ -42,21 +42,24 @@ pub struct PingPong {
     due: Half,
     missed: u32,
     torn: u32,
+    /// Missed lines before torn ones, which are told with the next line.
+    untold: u32,
 }
 
 impl PingPong {
     /// Creates the state before a transfer's first half.
     pub const fn new() -> Self {
-        Self { due: Half::First, missed: 0, torn: 0 }
+        Self { due: Half::First, missed: 0, torn: 0, untold: 0 }
     }
 
     /// Restarts with the first half of a new transfer.
     pub fn restart(&mut self) {
-        self.due = Half::First;
+        (self.due, self.untold) = (Half::First, 0);
     }
 
     /// Copies the half that is `done` into `line`, as many bytes as both have, and returns how many lines
-    /// were missed before it: 0 unless an interrupt was lost.
+    /// were missed since the last one that was returned: 0 unless an interrupt was lost. Torn lines are not
+    /// among them.
     ///
     /// `writing` is called after the copy and returns the half that the DMA is in, by its remaining count:
     /// `if ndtr > length / 2 { Half::First } else { Half::Second }`. Where that is the copied half, the copy
@@ -73,11 +76,12 @@ impl PingPong {
         self.missed = self.missed.saturating_add(missed);
         self.due = done.other();
         line.iter_mut().zip(bytes).for_each(|(to, &from)| *to = from);
+        self.untold = self.untold.saturating_add(missed);
         if writing() == done {
             self.torn = self.torn.saturating_add(1);
             return Err(LineFault::Torn);
         }
-        Ok(missed)
+        Ok(core::mem::take(&mut self.untold))
     }
 
     /// Number of lines whose interrupt was lost.

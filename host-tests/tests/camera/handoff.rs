@@ -250,3 +250,19 @@ fn lines_longer_than_a_slot_are_refused() {
     let refused = HandedLines::new(consumer, LineFormat { width: 5, ..FORMAT }, || false).err();
     assert_eq!(refused, Some(CameraError::BufferTooShort { needed: 5 }));
 }
+
+#[test]
+fn a_line_that_comes_while_the_time_ends_has_come() {
+    let mut bytes = [[0; BYTES]; 4];
+    let mut slots = LineSlots::<BYTES, 5>::new();
+    let (mut producer, consumer) = slots.split(&mut bytes);
+    let mut rows = 0..2;
+    let wait = || {
+        rows.next().into_iter().for_each(|row| send(&mut producer, 1, row));
+        false
+    };
+    let mut camera = HandedLines::new(consumer, FORMAT, wait).expect("a slot holds a line");
+    assert_eq!(camera.start_frame(), Ok(frame(1)));
+    let rows = [(); 3].map(|()| camera.next_line(&mut [0; BYTES]).map(|start| start.row));
+    assert_eq!(rows, [Ok(0), Ok(1), Err(CameraError::TimedOut)]);
+}

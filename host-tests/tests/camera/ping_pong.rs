@@ -15,6 +15,11 @@ fn halves_tell_lost_interrupts_and_torn_lines() {
     // The interrupt of the second half was lost.
     assert_eq!(ping_pong.take(Half::First, &[5; 4], &mut line, || Half::Second), Ok(1));
     assert_eq!((ping_pong.missed(), ping_pong.torn(), line), (1, 1, [5; 4]));
+    // An interrupt is lost and the next one is late: the line after these two tells of the first.
+    assert_eq!(ping_pong.take(Half::First, &[7; 4], &mut line, || Half::First), Err(LineFault::Torn));
+    assert_eq!(ping_pong.take(Half::Second, &[8; 4], &mut line, || Half::First), Ok(1));
+    assert_eq!(ping_pong.take(Half::First, &[9; 4], &mut line, || Half::Second), Ok(0));
+    assert_eq!((ping_pong.missed(), ping_pong.torn()), (2, 2));
     ping_pong.restart();
     assert_eq!(ping_pong.take(Half::First, &[6; 4], &mut line, || Half::Second), Ok(0));
     assert_eq!(Half::Second.other().other(), Half::Second);

@@ -37,6 +37,7 @@ use crate::matching::{
 /// repeated          due - 1       ignored                           lines_repeated
 /// of another frame  < due - 1     ends the frame                    syncs_lost
 /// old time stamp    due           replaced by the line above        lines_stale
+/// old time stamp    > due         lost with those skipped           lines_stale, lines_dropped
 /// none left         -             replaced by the line above        lines_short
 /// ```
 ///

@@ -20,10 +20,17 @@ pub(super) struct LineGuard {
     newest_us: u64,
     /// One more than the last row that the camera reported.
     reported: usize,
-    /// Row of the newest line while it replaces skipped lines above it.
-    held: Option<usize>,
+    /// Row of the newest line while the lines skipped above it are replaced.
+    held: Option<Held>,
     /// Whether the camera reported that no line is left.
     is_short: bool,
+}
+
+/// A line below skipped ones.
+struct Held {
+    row: usize,
+    /// Whether it is lost as they are, for its old time stamp: the line above replaces them all.
+    is_stale: bool,
 }
 
 /// Counter of a lost line, and the error if it is one too many.
@@ -82,13 +89,13 @@ impl LineGuard {
         due: usize,
     ) -> Result<(), PipelineError<C::Error>> {
         let height = usize::from(pipeline.config().height);
-        if let Some(row) = self.held {
+        if let Some(Held { row, is_stale }) = self.held {
             pipeline.left.repeat();
             pipeline.right.repeat();
             if row == due {
                 self.held = None;
             }
-            return self.accept(pipeline, row == due, due);
+            return self.accept(pipeline, row == due && !is_stale, due);
         }
         // A camera may give a line again and again: a frame's worth of that is enough.
         for _ in 0..=height {
@@ -102,7 +109,13 @@ impl LineGuard {
                     LineKind::Due => return self.accept(pipeline, true, due),
                     LineKind::Repeated => continue,
                     LineKind::Below(row) => {
-                        self.held = Some(row);
+                        self.held = Some(Held { row, is_stale: false });
+                        return self.accept(pipeline, false, due);
+                    }
+                    LineKind::StaleBelow(row) => {
+                        self.held = Some(Held { row, is_stale: true });
+                        pipeline.left.repeat();
+                        pipeline.right.repeat();
                         return self.accept(pipeline, false, due);
                     }
                     LineKind::Stale => (|c| &mut c.lines_stale, PipelineError::StaleLine { row: line.row }),
@@ -148,23 +161,18 @@ impl LineGuard {
         if row < due {
             return Ok(LineKind::Repeated);
         }
-        // Skipped rows are lost, even if this line is stale.
+        let is_stale = line.timestamp_us != 0 && line.timestamp_us < self.newest_us;
         let passed = row - due;
-        if passed > 0 {
-            count(&mut self.counters.lines_dropped, passed);
-            self.allow(passed, order)?;
+        if passed == 0 {
+            self.newest_us = self.newest_us.max(line.timestamp_us);
+            return Ok(if is_stale { LineKind::Stale } else { LineKind::Due });
         }
-        if line.timestamp_us != 0 && line.timestamp_us < self.newest_us {
-            if passed > 0 {
-                // The line that would replace them is lost itself.
-                self.reported = row;
-                count(&mut self.counters.lines_stale, 1);
-                return Err(PipelineError::StaleLine { row: line.row });
-            }
-            return Ok(LineKind::Stale);
-        }
+        // Skipped rows are lost, even if this line is stale.
+        count(&mut self.counters.lines_dropped, passed);
+        count(&mut self.counters.lines_stale, is_stale.into());
+        self.allow(passed + usize::from(is_stale), order)?;
         self.newest_us = self.newest_us.max(line.timestamp_us);
-        Ok(if passed > 0 { LineKind::Below(row) } else { LineKind::Due })
+        Ok(if is_stale { LineKind::StaleBelow(row) } else { LineKind::Below(row) })
     }
 
     /// Replaces the due line by the one above, if so many lines may be lost.
@@ -229,6 +237,8 @@ enum LineKind {
     Repeated,
     /// The line is of this row below the due one.
     Below(usize),
+    /// The same, with an old time stamp.
+    StaleBelow(usize),
     /// The line has an old time stamp.
     Stale,
 }

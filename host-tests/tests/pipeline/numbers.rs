@@ -201,12 +201,26 @@ fn a_line_is_stale_before_the_newest_time_of_its_frame() {
 }
 
 #[test]
-fn a_stale_line_below_skipped_ones_ends_the_frame() {
+fn a_stale_line_below_skipped_ones_is_lost_with_them() {
+    // Three stale lines one by one: the line above replaces them all.
+    let mut lines = in_order();
+    lines[8..11].iter_mut().for_each(|line| line.1 = 1003);
+    let (expected, _, _) = frame(&mut started(), Numbered::of_lines(lines));
     let mut lines = in_order();
     lines.drain(8..10);
     lines[8].1 = 1003;
-    let (rows, error, counters) = frame(&mut started(), Numbered::of_lines(lines));
-    assert_eq!(error, Some(PipelineError::StaleLine { row: 10 }));
-    assert_eq!((counters.lines_dropped, counters.lines_stale, counters.frames_broken), (2, 1, 1));
-    assert!(rows.iter().all(|row| !row.flags[0].contains(PixelFlags::DAMAGED)));
+    let mut guarded = started();
+    let (rows, error, counters) = frame(&mut guarded, Numbered::of_lines(lines.clone()));
+    assert_eq!((error, guarded.lost_lines()), (None, 3));
+    assert_eq!((counters.lines_dropped, counters.lines_stale, counters.frames_broken), (2, 1, 0));
+    assert_eq!(counters.lines, u32::from(HEIGHT) - 3);
+    assert!(rows == expected);
+    // All three count.
+    for most in [2, 3] {
+        let mut guarded = started();
+        guarded.set_most_lost(most);
+        let (_, error, _) = frame(&mut guarded, Numbered::of_lines(lines.clone()));
+        let refused = PipelineError::RowOrder { expected: 8, given: 10 };
+        assert_eq!(error, Some(refused).filter(|_| most < 3));
+    }
 }

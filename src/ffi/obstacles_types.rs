@@ -98,8 +98,8 @@ pub struct CStixel {
     pub sigma_steps: u16,
     /// Depth along the optical axis, mm; 0 for nothing.
     pub depth_mm: u16,
-    /// Uppermost row of pixels to which the ground is seen from the lowest one on; the picture's height where
-    /// it is not.
+    /// Uppermost row of pixels to which the ground is seen from the lowest one on; the first row below
+    /// the cells where it is not, and 65535 in a frame that is not finished.
     pub seen_row: u16,
     /// What it is: a `STEREOPSIS_STIXEL_` number.
     pub kind: u8,

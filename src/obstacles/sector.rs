@@ -65,7 +65,7 @@ pub struct Stixel {
     /// Depth, mm.
     pub depth_mm: u16,
     /// Uppermost row of pixels to which the ground is seen from the lowest one on; the first row below the
-    /// cells where it is not.
+    /// cells where it is not, and 65535 where nothing is known.
     pub seen_row: u16,
 }
 
@@ -145,10 +145,13 @@ impl ObstaclesView<'_> {
         self.state.carried.ground
     }
 
-    /// The stixel of a column of cells in the last frame; nothing for a column that is not there.
+    /// The stixel of a column of cells in the last frame; nothing, and no ground that is seen, for a column
+    /// that is not there and in a frame that is not finished.
     pub fn stixel(&self, column: usize) -> Stixel {
-        let setup = self.setup().filter(|setup| column < setup.columns);
-        let Some((setup, found)) = setup.zip(self.columns.get(column)) else { return Stixel::default() };
+        let setup = self.setup().filter(|setup| column < setup.columns && self.state.is_finished);
+        let Some((setup, found)) = setup.zip(self.columns.get(column)) else {
+            return Stixel { seen_row: u16::MAX, ..Stixel::default() };
+        };
         let cell = u16::from(setup.config.cell_height);
         let rows = (u16::from(found.top) * cell, u16::from(found.base) * cell + cell - 1);
         let none = found.kind == StixelKind::Nothing;

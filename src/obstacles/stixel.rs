@@ -18,6 +18,8 @@ const UNANSWERED: u32 = u32::from_le_bytes([8, 8, 8, 0]);
 const EACH: u32 = 0x0101_0101;
 /// Rows of pixels from which on a surface is high: two matching windows.
 const HIGH: u32 = 18;
+/// Rows at most that a near surface is seen beyond its edge: half a matching window, which sees both sides.
+const SPREAD: i64 = 4;
 /// Fewest cells of a segment.
 const FEWEST_CELLS: u8 = 2;
 
@@ -233,7 +235,8 @@ impl<'a> Labelling<'a> {
     }
 
     /// Parallax and deviation of a segment: the mean of its cells, and the root of the answers' variance plus
-    /// the cells'. A drop has the ground's parallax at its edge, whose place is known to a cell.
+    /// the cells'. A drop has the ground's parallax at its edge, which is in the segment's last row of cells or
+    /// up to [`SPREAD`] rows below it.
     fn measured(&self, column: usize, segment: Column, label: usize, sum: i32) -> Option<Column> {
         if segment.cells < FEWEST_CELLS || !matches!(label, OBSTACLE | DROP) {
             return None;
@@ -242,10 +245,10 @@ impl<'a> Labelling<'a> {
         if label == DROP {
             let ground = self.ground?;
             let right = self.cells.right_16ths(column);
-            let edge = ground.parallax(self.cells.halves(segment.base.into()), right);
-            // The edge is anywhere in its row of cells: a uniform distribution.
-            let cell = ((ground.slope * self.cells.cell_height) >> 16) as u64;
-            let sigma = (own * own + cell * cell / 12).isqrt().min(255) as u8;
+            let edge = ground.parallax(self.cells.halves(segment.base.into()) + SPREAD, right);
+            // The edge is anywhere in these rows: a uniform distribution.
+            let rows = ((ground.slope * (self.cells.cell_height + SPREAD)) >> 16) as u64;
+            let sigma = (own * own + rows * rows / 12).isqrt().min(255) as u8;
             return Some(Column { kind: StixelKind::Drop, parallax: edge, sigma, ..segment });
         }
         let count = i32::from(segment.cells);

@@ -1,6 +1,6 @@
 //! What counts: things that stand out of the ground in parts, answers in the sky, a known height, and sizes.
 
-use super::support::{Map, floor, rig};
+use super::support::{Finder, Map, floor, rig};
 use std::ops::Range;
 use stereopsis::depth::DepthScale;
 use stereopsis::obstacles::{
@@ -144,4 +144,20 @@ fn rows_of_which_anything_is_too_short_are_lost() {
         let blind = Some(BlindReason::RowsLost).filter(|_| is_lost);
         assert_eq!(finder.finish().err(), blind, "{lengths:?}");
     }
+}
+
+#[test]
+fn nothing_is_seen_of_a_frame_before_its_end() {
+    let map = Map::of(rig(), [160, 122], |_, v| floor(&rig(), 0.3, 0.2, v));
+    let mut finder = map.finder(&ObstacleConfig::default());
+    let seen = |finder: &mut Finder| [0, 20, 200].map(|column| finder.as_mut_view().stixel(column).seen_row);
+    assert_eq!(seen(&mut finder), [u16::MAX; 3]);
+    map.rows(&mut finder, |_| true);
+    assert_eq!(seen(&mut finder), [u16::MAX; 3]);
+    assert_eq!(finder.finish(), Ok(()));
+    let [first, middle, absent] = seen(&mut finder);
+    assert!(first < 60 && middle < 60 && absent == u16::MAX, "{first} {middle} {absent}");
+    finder.begin();
+    assert_eq!(seen(&mut finder), [u16::MAX; 3]);
+    assert_eq!(seen(&mut Finder::new()), [u16::MAX; 3]);
 }

@@ -3,7 +3,7 @@
 
 use super::support::{Cameras, frame};
 use stereopsis::depth::DepthScale;
-use stereopsis::matching::Block;
+use stereopsis::matching::{Block, Method, Sgm};
 use stereopsis::obstacles::{Decision, DriveConfig, DriveRule, ObstaclesView, SectorState};
 use stereopsis_host::scene::RobotScene;
 
@@ -114,6 +114,29 @@ fn the_ground_is_where_it_is() {
             assert!((290..=310).contains(&height_mm), "{scene:?}, seed {seed}: {height_mm} mm");
         }
     }
+}
+
+#[test]
+fn the_edge_of_a_table_is_where_it_is() {
+    fn edges<M: Method>(found: &mut Vec<f64>) {
+        let (sin, cos) = RobotScene::PITCH_RAD.sin_cos();
+        let depth_mm = 900.0 * cos + 1000.0 * RobotScene::HEIGHT_M * sin;
+        for (seed, noise) in (1..=6).flat_map(|seed| NOISES.map(|noise| (seed, noise))) {
+            let scene = RobotScene::Table.scene(seed);
+            let (left, right) = frame(&scene.render(), noise, 0);
+            let mut cameras = Cameras::<M>::new(&scene);
+            let view = cameras.frame(&left, &right).finder.as_mut_view();
+            let drops = (0..view.sectors()).map(|i| view.sector(i)).filter(|s| s.state == SectorState::Drop);
+            found.extend(drops.map(|s| (f64::from(s.depth_mm) - depth_mm) / f64::from(s.sigma_mm)));
+        }
+    }
+    let mut offs = Vec::new();
+    edges::<Block>(&mut offs);
+    edges::<Sgm>(&mut offs);
+    let mean = offs.iter().sum::<f64>() / offs.len() as f64;
+    let within = offs.iter().filter(|off| off.abs() <= 2.0).count();
+    assert!(offs.len() >= 12 * 12, "{} sectors", offs.len());
+    assert!(mean.abs() < 1.0 && 100 * within >= 95 * offs.len(), "mean {mean}, {within} of {offs:.1?}");
 }
 
 #[test]

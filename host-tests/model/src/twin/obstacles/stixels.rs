@@ -210,9 +210,10 @@ impl Column<'_> {
                 found.push(segment(parallax, (squares / n + sigma * sigma).isqrt().min(255)));
             } else if n >= 2 && kind == Kind::Drop {
                 let line = self.ground.expect("no drop without a ground");
-                let cell = line.slope * i128::from(self.scene.config.cell_height) / 65_536;
-                let sigma = (sigma * sigma + cell * cell / 12).isqrt().min(255);
-                found.push(segment(line.at(self.scene.halves(base), self.right), sigma));
+                // The edge is anywhere in the row of cells and the four rows below, half a window.
+                let rows = line.slope * i128::from(self.scene.config.cell_height + 4) / 65_536;
+                let sigma = (sigma * sigma + rows * rows / 12).isqrt().min(255);
+                found.push(segment(line.at(self.scene.halves(base) + 4, self.right), sigma));
             }
             top = base + 1;
         }

@@ -148,7 +148,7 @@ fn depths(rig: Rig, asked: &Asked, text: &mut String) {
 }
 
 /// What is wrong with a principal point in the outer tenth of images of a size, or outside of them: it is
-/// most likely that of images of another size, which KITTI's files and OpenCV's matrices do not say.
+/// most likely that of images of another size, which KITTI's files do not say, and not all of OpenCV's.
 pub fn off_middle((cx, cy): (f64, f64), ImageSize { width, height }: ImageSize) -> Option<String> {
     let is_inside = |c: f64, side: u16| {
         let side = f64::from(side);

@@ -36,6 +36,33 @@ fn a_calibration_of_another_size_is_said() {
 }
 
 #[test]
+fn the_size_of_rectified_images_is_kept() {
+    let bench = Bench::new();
+    let convert = |calib: &str, size: &[&str]| {
+        let out = bench.path("out.yml").display().to_string();
+        let args = ["calib", "convert", "--calib", calib, "--to", "opencv", "--out", &out];
+        let run = stereo([&args, size].concat());
+        assert!(run.status.success(), "{}", text(&run.stderr));
+        out
+    };
+    let matched = |calib: &str| stereo(bench.arguments(&[("--calib", calib)]));
+    let p = |n: u32, shift: u32| format!("P{n}: [90, 0, 48, -{shift}, 0, 90, 24, 0, 0, 0, 1, 0]\n");
+    let q = "Q: [[1, 0, 0, -48], [0, 1, 0, -24], [0, 0, 0, 90], [0, 0, 2, 0]]\n";
+    let size = |width: u32| format!("image_width: {width}\nimage_height: 48\n");
+    for matrices in [p(1, 0) + &p(2, 45), q.to_owned()] {
+        let calib = bench.put("rig.yml", (size(96) + &matrices).as_bytes()).display().to_string();
+        assert!(matched(&calib).status.success(), "{matrices}: {}", text(&matched(&calib).stderr));
+        let converted = convert(&calib, &[]);
+        assert!(matched(&converted).status.success(), "{}", text(&matched(&converted).stderr));
+        // Of images of another size, also through another format.
+        bench.put("rig.yml", (size(192) + &matrices).as_bytes());
+        bench.refused(&bench.arguments(&[("--calib", calib.as_str())]), "width says 192");
+        let converted = convert(&calib, &[]);
+        bench.refused(&bench.arguments(&[("--calib", converted.as_str())]), "width says 192");
+    }
+}
+
+#[test]
 fn calibrations_that_do_not_go_together_are_refused() {
     let bench = Bench::new();
     let put = |name: &str, content: &str| bench.put(name, content.as_bytes()).display().to_string();

@@ -88,6 +88,29 @@ mod tests {
     }
 
     #[test]
+    fn rectified_cameras_are_cameras_too() {
+        let p = |number, shift| format!("P{number}: [500, 0, 320, {shift}, 0, 500, 240, 0, 0, 0, 1, 0]\n");
+        let q = "[[1, 0, 0, -320], [0, 1, 0, -240], [0, 0, 0, 500], [0, 0, 10, 0]]";
+        let json = |key| format!("{{\"focal_px\": 500, \"{key}\": {q}}}");
+        let xml = |number, shift| {
+            format!(
+                "<P{number} type_id=\"opencv-matrix\"><rows>3</rows><cols>4</cols><dt>d</dt><data>500. 0. \
+                 320. {shift} 0. 500. 240. 0. 0. 0. 1. 0.</data></P{number}>"
+            )
+        };
+        let xml = format!(
+            "<?xml version=\"1.0\"?><opencv_storage>{}{}</opencv_storage>",
+            xml(1, "0."),
+            xml(2, "-50.")
+        );
+        for text in [p(1, 0) + &p(2, -50), format!("Q: {q}\n"), json("Q"), json("q"), xml] {
+            let cameras = of(&text).expect(&text);
+            assert_eq!(cameras.first.focal_px(), (500.0, 500.0), "{text}");
+            assert_eq!(cameras.second.principal_point(), (320.0, 240.0), "{text}");
+        }
+    }
+
+    #[test]
     fn what_is_wrong_is_named() {
         for (text, said) in [
             ("", "empty"),

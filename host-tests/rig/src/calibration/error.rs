@@ -55,8 +55,8 @@ pub enum Fault {
     NotTheOther,
     /// A calibration of raw images where one of rectified ones is needed.
     #[error(
-        "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); give \
-         --rectify with raw images"
+        "says how the cameras are mounted, but not how their rectified images are (P1 and P2, or Q); raw \
+         images are rectified by `match --rectify` and by `rectify`"
     )]
     NotRectified,
     /// Rectified cameras below each other.

@@ -154,9 +154,14 @@ pub(super) fn cameras(texts: &[String]) -> Result<Option<[Camera<f64>; 2]>, Faul
         [one, two] if ros::is_one(one) && ros::is_one(two) => [ros::camera_of(one)?, ros::camera_of(two)?],
         [one] if ros::is_one(one) => [ros::camera_of(one)?; 2],
         trees if trees.iter().any(opencv::is_one) => opencv::cameras(trees)?,
-        trees => match trees.iter().find(|tree| opencv::is_one_camera(tree)) {
-            Some(tree) => [opencv::camera_of(tree)?; 2],
-            None => return Ok(None),
+        trees => match (aligned::find_pair(trees)?, trees.iter().find(|tree| opencv::is_one_camera(tree))) {
+            (Some(pair), _) => {
+                let [left, right] =
+                    pair.cameras.map(|c| camera(c.key, [c.fx, c.fy, c.cx, c.cy], Model::BrownConrady, &[]));
+                [left?, right?]
+            }
+            (None, Some(tree)) => [opencv::camera_of(tree)?; 2],
+            (None, None) => return Ok(None),
         },
     };
     Ok(Some(both))
@@ -187,14 +192,14 @@ fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Foun
     let mut fault = None;
     for (path, text) in paths.iter().zip(texts) {
         if kitti::counts_from_one(text) {
-            return rectified(path);
+            return rectified(std::slice::from_ref(path), unit_m);
         }
         match tree::read(text) {
             Ok(found) => trees.extend(found),
             Err(error) => fault = Some(error),
         }
         if trees.iter().all(|tree| !is_tree(tree)) && (middlebury::is_one(text) || kitti::is_one(text)) {
-            return rectified(path);
+            return rectified(std::slice::from_ref(path), unit_m);
         }
     }
     match trees.as_slice() {
@@ -204,6 +209,7 @@ fn find(paths: &[PathBuf], texts: &[String], unit_m: Option<f64>) -> Result<Foun
         [one, rest @ ..] if opencv::is_one(one) || rest.iter().any(opencv::is_one) => {
             opencv::read(&trees, unit_m)
         }
+        [_, ..] if aligned::find_pair(&trees)?.is_some() => rectified(paths, unit_m),
         _ => Err(fault.map_or(Fault::UnknownRaw, Fault::Syntax)),
     }
 }
@@ -212,9 +218,11 @@ fn is_tree(tree: &Tree) -> bool {
     kalibr::is_one(tree) || ros::is_one(tree) || opencv::is_one(tree)
 }
 
-/// Middlebury's and KITTI's cameras.
-fn rectified(path: &Path) -> Result<Found, Fault> {
-    let calibration = Calibration::open(path, path).map_err(|error| error.fault)?;
+/// The cameras of a file that says how they are after rectification.
+fn rectified(paths: &[PathBuf], unit_m: Option<f64>) -> Result<Found, Fault> {
+    // The files themselves stand for the left image, whose place says which of KITTI's pairs is meant.
+    let left = paths.first().map_or(Path::new(""), PathBuf::as_path);
+    let calibration = Calibration::open_all(paths, left, unit_m).map_err(|error| error.fault)?;
     let rig = &calibration.rig;
     let (f, (cx, cy)) = (f64::from(rig.focal_px()), rig.principal_point());
     let offset = f64::from(rig.disparity_offset_px());

@@ -113,9 +113,14 @@ pub(super) fn read(trees: &[Tree], unit_m: Option<f64>) -> Result<Found, Fault> 
         format: "OpenCV",
         cameras,
         pose: pose_of(r_key, r, t)?,
-        size: trees.iter().find_map(sides).map(|(key, value)| size(key, &value)).transpose()?,
+        size: image_size(trees)?,
         baseline_key: "T",
     })
+}
+
+/// The images' columns and rows, where the file says them.
+pub(super) fn image_size(trees: &[Tree]) -> Result<Option<[u64; 2]>, Fault> {
+    trees.iter().find_map(sides).map(|(key, value)| size(key, &value)).transpose()
 }
 
 /// The unit of T, m: what the file says, or what is told, which must agree.

@@ -8,7 +8,7 @@ use crate::uncalibrated::is_uncalibrated;
 use std::path::{Path, PathBuf};
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::{Camera, ImageSize, RectifiedRig};
-use stereopsis_host::calibration::Calibration;
+use stereopsis_host::calibration::{Calibration, off_middle};
 
 /// The camera of a rectified pair.
 pub fn camera(rig: &RectifiedRig) -> Option<Camera<f64>> {
@@ -56,6 +56,14 @@ pub fn scale(args: &MatchArgs, pair: &Pair) -> Result<Option<DepthScale>, Failur
         }
     }
     of_files(&args.calib, args.options.unit, &pair.inputs[0], size).map(Some)
+}
+
+/// What is wrong with a calibration that is most likely of images of another size.
+pub fn off_middle_of(calib: &[PathBuf], scale: &DepthScale, size: ImageSize) -> Option<String> {
+    let (path, (cx, cy)) = (calib.first()?, scale.rig().principal_point());
+    let off = off_middle((cx.into(), cy.into()), size)?;
+    let path = path.display();
+    Some(format!("{path}: {off}: depths are wrong if it was made for images of another size"))
 }
 
 /// The scale of a focal length, px, and a baseline, mm, with the principal point in the middle of the images.

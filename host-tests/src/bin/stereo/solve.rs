@@ -9,7 +9,7 @@ use crate::match_args::MatchArgs;
 use crate::place::{json, png};
 use crate::rectified::{self, RectifiedCameras};
 use crate::results::{self, DepthFiles};
-use crate::scale::{camera, scale};
+use crate::scale::{camera, off_middle_of, scale};
 use crate::shared::remark;
 use crate::watch::{self, OBSTACLES, Watch};
 use image::{RgbImage, imageops};
@@ -17,7 +17,6 @@ use std::fmt::Display;
 use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
-use stereopsis_host::calibration::off_middle;
 use stereopsis_host::masked::MaskedPair;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
@@ -65,7 +64,8 @@ pub fn solve(
         let offset_px = scale.as_ref().map_or(0.0, |scale| scale.rig().disparity_offset_px().into());
         let looked = Looked { valid, camera: camera.as_ref(), offset_px, ..Looked::of([&left, &right]) };
         let Look { config, check, rows } = look(&args.search, &args.method, &looked, || None)?;
-        let off = scale.as_ref().and_then(|scale| off_middle_of(args, scale, &pair));
+        let size = ImageSize { width: pair.width, height: pair.height };
+        let off = scale.as_ref().and_then(|scale| off_middle_of(&args.calib, scale, size));
         pair.notes.extend(off.clone().filter(|_| check.is_none()));
         let check = check.map(|check| check.with_warning(off));
         let matched = match masks {
@@ -132,14 +132,6 @@ pub fn solve(
         remark(&format!("{label}{line}"));
     }
     Ok((summary, scene.rectified))
-}
-
-/// What is wrong with a calibration that is most likely of images of another size.
-fn off_middle_of(args: &MatchArgs, scale: &DepthScale, pair: &Pair) -> Option<String> {
-    let (path, (cx, cy)) = (args.calib.first()?, scale.rig().principal_point());
-    let off = off_middle((cx.into(), cy.into()), ImageSize { width: pair.width, height: pair.height })?;
-    let path = path.display();
-    Some(format!("{path}: {off}: depths are wrong if it was made for images of another size"))
 }
 
 /// Whether obstacles, if they are asked for, can be found.

@@ -2,7 +2,8 @@
 
 use super::ReplayArgs;
 use crate::failure::Failure;
-use crate::scale::{of_files, of_numbers};
+use crate::scale::{of_files, of_numbers, off_middle_of};
+use crate::shared::remark;
 use crate::watch::{self, Watch};
 use image::{DynamicImage, GrayImage, RgbImage};
 use stereopsis::depth::DepthScale;
@@ -28,7 +29,13 @@ pub fn watch(args: &ReplayArgs, header: Header) -> Result<Option<(Watch, DepthSc
                 "--obstacles: distances need a calibration; give --calib, or --focal-px and --baseline-mm",
             ));
         }
-        (None, 1 | 2) => of_files(&args.calib, args.unit, &args.from, size)?,
+        (None, 1 | 2) => {
+            let scale = of_files(&args.calib, args.unit, &args.from, size)?;
+            if let Some(off) = off_middle_of(&args.calib, &scale, size) {
+                remark(&format!("warning: {off}"));
+            }
+            scale
+        }
         _ => {
             return Err(Failure::usage(
                 "--calib: is given more than twice; a file of both cameras or one of each is needed",

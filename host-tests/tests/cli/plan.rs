@@ -146,3 +146,41 @@ fn what_cannot_be_planned_is_named() {
     bench.refused(&with(&["--size", "15x240", "--focal-px", "100"]), "--size 15x240");
     bench.refused(&with(&["--size", "320", "--focal-px", "100"]), "--size");
 }
+
+/// A number after some words of a text.
+fn after(text: &str, words: &str) -> f64 {
+    let rest = text.split(words).nth(1).unwrap_or_else(|| panic!("{words}: {text}"));
+    let number: String = rest.chars().take_while(|c| c.is_ascii_digit() || *c == '.').collect();
+    number.parse().expect("a number")
+}
+
+#[test]
+fn what_would_help_does() {
+    // Principal points that are 31 px apart, as Middlebury's are, and a range that ends before infinity.
+    for (doffs, farthest) in [(31.1, 20.0), (0.0, 5.0)] {
+        let bench = Bench::new();
+        let check = |scale: f64, baseline: f64| {
+            let (f, cx, far) = (999.4 / scale, 294.2 / scale, (294.2 + doffs) / scale);
+            let [w, h, doffs] = [741.0, 497.0, doffs].map(|side| side / scale);
+            let calib = format!(
+                "cam0=[{f} 0 {cx}; 0 {f} 252; 0 0 1]\ncam1=[{f} 0 {far}; 0 {f} 252; 0 0 1]\ndoffs={doffs}\n\
+                 baseline={baseline}\nwidth={}\nheight={}\nndisp=64\n",
+                w.floor(),
+                h.floor()
+            );
+            let calib = bench.put("calib.txt", calib.as_bytes()).display().to_string();
+            let range = ["--nearest", "0.5", "--farthest", &farthest.to_string()];
+            let run = stereo([&["calib", "check", "--calib", &calib], &range[..]].concat());
+            assert!(run.status.success(), "{}", text(&run.stderr));
+            text(&run.stdout)
+        };
+        let told = check(1.0, 193.0);
+        let shorter = check(1.0, after(&told, "a baseline of "));
+        let reach = after(&told, "would begin at 0.5 m, and reach ");
+        assert!(after(&shorter, "within 5 % up to ") >= reach - 0.06, "{told}{shorter}");
+        assert!(!shorter.contains("depths from 0.5 m take"), "{shorter}");
+        let half = check(2.0, 193.0);
+        let disparities = after(&told, "half the size, would begin at 0.5 m with ");
+        assert!(half.contains(&format!("--disparities {disparities}")), "{told}{half}");
+    }
+}

@@ -45,13 +45,21 @@ fn nearest(plan: &Plan) -> Found {
     let with = |mm: u32| Rig { baseline_m: f64::from(mm) / 1000.0, ..*rig };
     let most = (1000.0 * rig.baseline_m).ceil() as u32;
     if let Some(mm) = (1..most).rev().find(|&mm| fits(&with(mm))) {
-        let reach = with(mm).fb_px_m() * wanted.accuracy / plan.sigma_px;
+        let rig = with(mm);
+        let end_m = Search::of(&rig, near, wanted.farthest_m).end_m(&rig).unwrap_or(f64::INFINITY);
+        let reach = (rig.fb_px_m() * wanted.accuracy / plan.sigma_px).min(end_m);
         changes.push(format!(
             "a baseline of {mm} mm would begin at {near} m, and reach {reach:.1} m within {} %",
             percent(wanted.accuracy)
         ));
     }
-    let half = Rig { focal_px: rig.focal_px / 2.0, width: rig.width / 2, height: rig.height / 2, ..*rig };
+    let half = Rig {
+        baseline_m: rig.baseline_m,
+        focal_px: rig.focal_px / 2.0,
+        offset_px: rig.offset_px / 2.0,
+        width: rig.width / 2,
+        height: rig.height / 2,
+    };
     if half.width >= STEP && fits(&half) {
         changes.push(format!(
             "images of {} x {} px, half the size, would begin at {near} m with {} disparities",

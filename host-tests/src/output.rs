@@ -73,10 +73,14 @@ fn in_folder(path: &Path) -> Option<PathBuf> {
 
 /// Whether a result can take a place: of a regular file that is no input of the run, or of none. A symbolic
 /// link to a file, or to nothing, is replaced; what it points to stays. Folders are refused where they are
-/// met.
+/// met, and so are the names of the system, as `/dev/stdout`, whatever stands behind them.
 pub fn check_place(place: &Path) -> Result<(), OutputError> {
     if INPUTS.get().is_some_and(|inputs| in_folder(place).is_some_and(|place| inputs.contains(&place))) {
         return Err(OutputError::Input { path: place.into() });
+    }
+    let names = [in_folder(place), fs::read_link(place).ok()];
+    if names.iter().flatten().any(|name| is_of_the_system(name)) {
+        return Err(OutputError::NotAFile { path: place.into() });
     }
     let is_link = fs::symlink_metadata(place).is_ok_and(|found| found.is_symlink());
     match fs::metadata(place) {
@@ -85,6 +89,11 @@ pub fn check_place(place: &Path) -> Result<(), OutputError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Whether a name is one of a device or of an open file.
+fn is_of_the_system(name: &Path) -> bool {
+    name.starts_with("/proc") || name.parent() == Some(Path::new("/dev"))
 }
 
 /// What the name of the folder of unfinished files begins with.

@@ -1,6 +1,6 @@
 //! Results appear together or not at all.
 
-use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, text};
+use super::support::{Bench, HEIGHT, WIDTH, calibration, names, program, stereo, text};
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
@@ -171,4 +171,23 @@ fn standard_output_that_takes_nothing_is_an_error() {
     let run = program().arg("--help").stdout(full).output().expect("it starts");
     assert_eq!(run.status.code(), Some(1));
     assert!(text(&run.stderr).starts_with("stereo: standard output: "), "{}", text(&run.stderr));
+}
+
+/// A link to where the output goes is no place for a result: it would be replaced, not written to.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_link_to_standard_output_is_kept() {
+    let bench = Bench::new();
+    let link = bench.path("link");
+    std::os::unix::fs::symlink("/proc/self/fd/1", &link).expect("a link");
+    let to = std::fs::File::create(bench.path("to")).expect("a file");
+    let walk = bench.path("walk").display().to_string();
+    assert!(stereo(["walk", "--out", &walk, "--frames", "2", "--width", "160"]).status.success());
+    let calib = format!("{walk}/calib.txt");
+    let mut odometry = program();
+    odometry.args(["odometry", "--sequence", &walk, "--calib", &calib, "--out"]).arg(&link);
+    let run = odometry.stdout(to).output().expect("it starts");
+    assert_eq!(run.status.code(), Some(1), "{}", text(&run.stderr));
+    assert!(text(&run.stderr).contains("link"), "{}", text(&run.stderr));
+    assert!(link.is_symlink());
 }

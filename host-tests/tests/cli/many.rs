@@ -178,6 +178,15 @@ fn raw_frames_come_through_a_pipe() {
     let told = text(&cut.stderr);
     assert_eq!((cut.status.code(), told.lines().count()), (Some(1), 1), "{told}");
     assert!(told.contains("standard input: ends after 9215 of 9216 bytes of frame 1"), "{told}");
+    // Frames before one that is cut have their table.
+    let out = at(&bench, "cut");
+    let args = ["--raw", &size, "--side-by-side", "-", "--out", &out];
+    let cut = piped(&args, &[&frame, &frame[..100]].concat());
+    assert!(text(&cut.stderr).contains("ends after 100 of 9216 bytes of frame 2"), "{}", text(&cut.stderr));
+    assert_eq!(
+        (cut.status.code(), names(&bench.path("cut"))),
+        (Some(1), vec!["000001".into(), "frames.csv".into()])
+    );
     let none = piped(&args, b"");
     assert_eq!(none.status.code(), Some(1));
     assert!(text(&none.stderr).contains("standard input: holds no frame"), "{}", text(&none.stderr));

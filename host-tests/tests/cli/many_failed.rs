@@ -29,6 +29,12 @@ fn a_pair_that_cannot_be_matched_is_named_and_the_others_are_matched() {
     let told = text(&stereo(args).stderr);
     assert!(told.contains("000002 of 3 is being") && told.contains("000003 of 3 is there already"), "{told}");
 
+    // What an earlier run had of a pair that fails is said to be of that one.
+    cut("f9");
+    let told = text(&stereo(args).stderr);
+    assert!(told.contains("000002: is of an earlier run, not in frames.csv"), "{told}");
+    bench.put("frames/left/f9.png", &whole);
+
     // What is wrong with the command line is wrong for all.
     let usage = stereo(args.into_iter().chain(["--depth-unit", "1/256"]));
     let told = text(&usage.stderr);

@@ -92,9 +92,17 @@ pub fn run(
     check_obstacles(args)?;
     let mut watch = args.watch.watch();
     let of = count.map_or(String::new(), |count| format!(" of {count}"));
-    let (mut lines, mut failed) = (Vec::new(), Vec::new());
+    let (mut lines, mut failed, mut cut) = (Vec::new(), Vec::new(), None);
     for (number, input) in (1..).zip(inputs) {
-        let input = input?;
+        let input = match input {
+            Ok(input) => input,
+            // What came before has its tables.
+            Err(error) if !lines.is_empty() => {
+                cut = Some(error);
+                break;
+            }
+            Err(error) => return Err(error),
+        };
         let frame = format!("{number:06}");
         let one = MatchArgs { out: args.out.join(&frame), ..args.clone() };
         let mark = input.bytes().map(|bytes| Mark::new(bytes.iter().chain(&beside), &settings));
@@ -110,6 +118,9 @@ pub fn run(
             Err(error) if error.is_usage() || lines.is_empty() => return Err(error.of(&frame)),
             Err(error) => {
                 remark(&format!("{frame}: {error}"));
+                if one.out.join(FINISHED).is_file() {
+                    remark(&format!("note: {}: is of an earlier run, not in {TABLE}", one.out.display()));
+                }
                 lines.push(Line::failed(frame.clone(), input.name(), &error));
                 failed.push(frame);
             }
@@ -118,6 +129,9 @@ pub fn run(
     write_table(&args.out, TABLE, &lines, None, watch.as_ref())?;
     note_earlier_runs(&args.out, lines.len());
     tell(args, &lines, watch.as_ref())?;
+    if let Some(cut) = cut {
+        return Err(cut);
+    }
     if failed.is_empty() {
         return Ok(());
     }

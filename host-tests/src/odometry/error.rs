@@ -84,10 +84,22 @@ pub struct RelativeError {
 /// there are none.
 pub fn rpe(estimate: &[Pose<f64>], truth: &[Pose<f64>], frames: usize, scale: f64) -> Option<RelativeError> {
     let n = estimate.len().min(truth.len());
-    let count = n.checked_sub(frames).filter(|&count| count > 0 && frames > 0)?;
+    let count = n.checked_sub(frames).filter(|_| frames > 0)?;
+    rpe_of(estimate, truth, (0..count).map(|i| [i, i + frames]), scale)
+}
+
+/// The errors of the motions between these pairs of places in both trajectories.
+pub fn rpe_of(
+    estimate: &[Pose<f64>],
+    truth: &[Pose<f64>],
+    motions: impl Iterator<Item = [usize; 2]>,
+    scale: f64,
+) -> Option<RelativeError> {
     let (mut steps, mut turns, mut directions, mut directed, mut worst) = (0.0, 0.0, 0.0, 0, 0.0_f64);
-    for i in 0..count {
-        let motion = |poses: &[Pose<f64>]| poses[i].inverse().then(&poses[i + frames]);
+    let mut count = 0;
+    for [i, j] in motions {
+        count += 1;
+        let motion = |poses: &[Pose<f64>]| poses[i].inverse().then(&poses[j]);
         let (p, q) = (motion(estimate), motion(truth));
         let step = p.translation() * scale;
         let error = q.inverse().then(&Pose::new(*p.rotation(), step).unwrap_or(p));
@@ -100,8 +112,8 @@ pub fn rpe(estimate: &[Pose<f64>], truth: &[Pose<f64>], frames: usize, scale: f6
             directed += 1;
         }
     }
-    let mean = |sum: f64| (sum / count as f64).sqrt();
-    Some(RelativeError {
+    let mean = |sum: f64| (sum / f64::from(count)).sqrt();
+    (count > 0).then(|| RelativeError {
         translation: mean(steps),
         rotation_rad: mean(turns),
         direction_rad: directions / f64::from(directed.max(1)),

@@ -57,6 +57,15 @@ pub enum PosesError {
     },
 }
 
+/// A trajectory that was read.
+#[derive(Clone, Debug)]
+pub struct Poses {
+    /// The pose of each line.
+    pub poses: Vec<Pose<f64>>,
+    /// The time of each, seconds, of a file in TUM's form.
+    pub times_s: Option<Vec<f64>>,
+}
+
 /// Writes a trajectory as KITTI does. The first line of one that begins in the first camera is the identity,
 /// exactly.
 pub fn write(out: &mut dyn Write, poses: &[Pose<f64>]) -> io::Result<()> {
@@ -143,9 +152,9 @@ pub fn write_states(out: &mut dyn Write, steps: &[Step<f64>], rigs: &[RigEstimat
 /// How far off a rotation's columns may be from length one and from right angles: of two decimals.
 const MOST_OFF: f64 = 0.02;
 
-/// Reads a trajectory of either form; empty lines and comments are passed over, and rotations may have few
-/// decimals.
-pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
+/// Reads a trajectory of either form, that of its first line; empty lines and comments are passed over, and
+/// rotations may have few decimals.
+pub fn read(path: &Path) -> Result<Poses, PosesError> {
     let text = read_text(path)?;
     let is_pose = |content: &str| !content.trim().is_empty() && !content.trim_start().starts_with('#');
     let lines = text.lines().zip(1..).filter(|(content, _)| is_pose(content));
@@ -153,13 +162,24 @@ pub fn read(path: &Path) -> Result<Vec<Pose<f64>>, PosesError> {
         let words = content.split_ascii_whitespace().map(|word| word.parse().ok());
         let numbers = words.collect::<Option<Vec<f64>>>().filter(|n| n.iter().all(|x| x.is_finite()));
         let pose = numbers.and_then(|numbers| match numbers.len() {
-            8 => tum_pose(&numbers),
-            _ => kitti_pose(&numbers),
+            8 => Some((Some(numbers[0]), tum_pose(&numbers)?)),
+            _ => Some((None, kitti_pose(&numbers)?)),
         });
         pose.ok_or_else(|| PosesError::Line { path: path.into(), line })
     };
-    let poses = lines.map(pose).collect::<Result<Vec<_>, _>>()?;
-    if poses.is_empty() { Err(PosesError::Empty { path: path.into() }) } else { Ok(poses) }
+    let (mut times, mut poses) = (Vec::new(), Vec::new());
+    for (content, line) in lines {
+        let (time, pose) = pose((content, line))?;
+        times.extend(time);
+        poses.push(pose);
+        if !times.is_empty() && times.len() != poses.len() {
+            return Err(PosesError::Line { path: path.into(), line });
+        }
+    }
+    match poses.len() {
+        0 => Err(PosesError::Empty { path: path.into() }),
+        _ => Ok(Poses { poses, times_s: (!times.is_empty()).then_some(times) }),
+    }
 }
 
 /// The pose of twelve numbers, the rows of [R | t].

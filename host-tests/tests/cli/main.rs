@@ -22,6 +22,7 @@ mod obstacles;
 mod odometry;
 mod odometry_gaps;
 mod odometry_refused;
+mod odometry_times;
 mod output;
 mod pair;
 mod partners;

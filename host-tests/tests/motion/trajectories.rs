@@ -4,7 +4,8 @@ use crate::support::pose;
 use nalgebra::Vector3;
 use stereopsis::geometry::camera::Pose;
 use stereopsis_host::odometry::error::{Alignment, align, ate, drift, rpe};
-use stereopsis_host::odometry::poses;
+use stereopsis_host::odometry::poses::{self, Poses};
+use stereopsis_host::odometry::truth::FrameTruth;
 
 /// A way round a corner.
 fn way() -> Vec<Pose<f64>> {
@@ -23,7 +24,9 @@ fn files_come_back_as_they_were() {
     assert_eq!(first, [1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0, 0.0]);
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), &bytes).expect("room");
-    for (a, b) in poses::read(file.path()).expect("poses").iter().zip(way()) {
+    let read = poses::read(file.path()).expect("poses");
+    assert!(read.times_s.is_none());
+    for (a, b) in read.poses.iter().zip(way()) {
         assert!(
             (a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8
         );
@@ -49,14 +52,18 @@ fn times_places_and_quaternions_come_back_as_they_were() {
     let file = tempfile::NamedTempFile::new().expect("a file");
     std::fs::write(file.path(), &bytes).expect("room");
     let read = poses::read(file.path()).expect("poses");
-    assert_eq!(read.len(), 12);
-    for (a, b) in read.iter().zip(way()) {
+    assert_eq!(read.poses.len(), 12);
+    assert_eq!(read.times_s.as_deref(), Some(times.as_slice()));
+    for (a, b) in read.poses.iter().zip(way()) {
         assert!(
             (a.translation() - b.translation()).norm() < 1e-8 && (a.rotation() - b.rotation()).amax() < 1e-8
         );
     }
     std::fs::write(file.path(), "0 1 2 3 0 0 0 0.5\n").expect("room");
     assert!(poses::read(file.path()).is_err(), "a quaternion has the length 1");
+    std::fs::write(file.path(), "0 1 2 3 0 0 0 1\n1 0 0 0 0 1 0 0 0 0 1 0\n").expect("room");
+    let error = poses::read(file.path()).expect_err("one form").to_string();
+    assert!(error.contains("line 2 is no pose"), "{error}");
     for (text, expected) in [
         ("0\n0.1\n0.3\n", None),
         ("0\n0.1\n", Some("has 2 times; 3 are needed, one a frame")),
@@ -70,6 +77,33 @@ fn times_places_and_quaternions_come_back_as_they_were() {
             (found, _) => panic!("{text}: {found:?}"),
         }
     }
+}
+
+#[test]
+fn true_poses_are_those_of_the_frames_times() {
+    // Straight ahead by 1 and about Y by 0.1 each second, four poses a second, of which one second is missing;
+    // the order of the lines does not matter.
+    let at = |s: f64| pose([0.0, 0.1 * s, 0.0], [0.0, 0.0, s]);
+    let mut times: Vec<f64> = (0..40).map(|i| 100.0 + 0.25 * f64::from(i)).collect();
+    times.retain(|t| *t <= 104.0 || *t >= 105.0);
+    times.reverse();
+    let truth = Poses { poses: times.iter().map(|t| at(t - 100.0)).collect(), times_s: Some(times) };
+    // The first frame is before the truth, the second one at its beginning but for a rounded digit.
+    let frames = [99.9, 99.999, 100.1, 100.3, 100.5, 103.9, 104.1, 104.4, 104.9, 105.1, 105.3, 120.0];
+    let known = FrameTruth::at(&truth, &frames);
+    assert_eq!(known.frames, [1, 2, 3, 4, 5, 9, 10]);
+    for (frame, found) in known.frames.iter().zip(&known.poses) {
+        let expected = at((frames[*frame] - 100.0).max(0.0));
+        assert!((found.translation() - expected.translation()).norm() < 1e-9, "{frame}: {found:?}");
+        assert!((found.rotation() - expected.rotation()).amax() < 1e-9, "{frame}: {found:?}");
+    }
+    assert_eq!(known.steps().collect::<Vec<_>>(), [[0, 1], [1, 2], [2, 3], [3, 4], [5, 6]]);
+    let numbered: Vec<_> = (0..12).map(|i| at(f64::from(i))).collect();
+    let beside = known.beside(&numbered);
+    assert!(beside.iter().zip(&known.frames).all(|(pose, &frame)| *pose == numbered[frame]));
+    // A truth without times has a line for each frame.
+    let untimed = FrameTruth::at(&Poses { times_s: None, ..truth }, &frames[..3]);
+    assert_eq!((untimed.frames, untimed.poses.len()), (vec![0, 1, 2], 3));
 }
 
 #[test]

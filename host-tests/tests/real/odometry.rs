@@ -16,7 +16,7 @@ fn a_street_of_kitti_with_one_camera() {
     let data = std::env::var_os("STEREO_DATA").expect("set STEREO_DATA to the folder that holds odometry/");
     let folder = PathBuf::from(data).join("odometry/kitti_mono_1");
     let sequence = Sequence::open(&folder).expect("a sequence");
-    let truth = poses::read(&folder.join("poses.txt")).expect("poses");
+    let truth = poses::read(&folder.join("poses.txt")).expect("poses").poses;
     let camera = Cameras::open_first(&[folder.join("calib.txt")]).expect("a camera");
     let frames = (0..sequence.len()).map(|i| sequence.frame(i));
     let found = run(&Rig::Mono(camera), frames, RunConfig::default(), |_| ()).expect("a trajectory");

@@ -27,7 +27,7 @@ use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
 use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::rectify::{RectifiedPictures, RectifyPicturesError, rectify};
 use stereopsis_host::scene::SceneCamera;
-use summary::{beside, summary};
+use summary::{beside, summary, true_poses};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -80,7 +80,8 @@ pub struct OdometryArgs {
     /// How poses are written
     #[arg(long, value_name = "FORM", default_value = "kitti")]
     pub format: PoseFormat,
-    /// Times of the frames, seconds, a line each, for --format tum; without them the frames' numbers from 0
+    /// Times of the frames, seconds, a line each, for --format tum and for a truth with times; without them
+    /// the frames' numbers from 0
     #[arg(long, value_name = "FILE")]
     pub times: Option<PathBuf>,
     /// Follow a pair even if its cameras seem to be swapped
@@ -93,7 +94,8 @@ pub struct OdometryArgs {
     /// CSV
     #[arg(long, value_name = "FILE.csv")]
     pub states: Option<PathBuf>,
-    /// True poses in either form, a line for each frame: errors are printed, and they are drawn
+    /// True poses in either form: errors are printed, and they are drawn. A line for each frame; with --times
+    /// lines of t x y z qx qy qz qw may have other times, and are interpolated at those of the frames
     #[arg(long, value_name = "FILE")]
     pub truth: Option<PathBuf>,
 }
@@ -121,8 +123,8 @@ struct Cams {
 pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let sequence = Sequence::open(&args.sequence)?;
     let cameras = cameras(args, &sequence)?;
-    let truth = args.truth.as_deref().map(poses::read).transpose()?;
     let times = times(args, sequence.len())?;
+    let truth = true_poses(args, &times)?;
     let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
     let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
     if states
@@ -158,7 +160,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
 
     let unit = if sequence.is_stereo() { "m" } else { "first baselines" };
     let draw = |out: &mut dyn io::Write| {
-        let aligned = truth.as_deref().map(|truth| beside(&trajectory, truth, sequence.is_stereo()));
+        let aligned = truth.as_ref().map(|truth| beside(&trajectory, truth, sequence.is_stereo()));
         out.write_all(svg(&trajectory, aligned.as_deref(), unit).as_bytes())
     };
     let mut others: Vec<(&Place, Content<'_>)> = Vec::new();
@@ -171,7 +173,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     };
     place.write_all(found, others)?;
     warn_of(trajectory.rigs.last(), args.calib.first().map_or(Path::new(""), PathBuf::as_path));
-    print(&summary(args, &sequence, &cameras, &trajectory, truth.as_deref()))?;
+    print(&summary(args, &sequence, &cameras, &trajectory, truth.as_ref()))?;
     judge(&trajectory, &args.sequence)
 }
 
@@ -193,12 +195,14 @@ fn judge(trajectory: &Trajectory, sequence: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Why there is nothing that times could be for.
+const NO_TIMES: &str =
+    "--times: only --format tum has times, and a --truth of that form; give --format tum too";
+
 /// The time of each frame, or its number.
 fn times(args: &OdometryArgs, frames: usize) -> Result<Vec<f64>, Failure> {
     match &args.times {
-        Some(_) if args.format != PoseFormat::Tum => {
-            Err(Failure::usage("--times: only --format tum has times; give --format tum too"))
-        }
+        Some(_) if args.format != PoseFormat::Tum && args.truth.is_none() => Err(Failure::usage(NO_TIMES)),
         Some(path) => Ok(poses::read_times(path, frames)?),
         None => Ok((0..frames).map(|frame| frame as f64).collect()),
     }

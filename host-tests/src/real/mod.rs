@@ -20,7 +20,7 @@ use crate::run::MOST_WIDTH;
 use image::GrayImage;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
-use stereopsis::camera::{CameraPair, StereoSource};
+use stereopsis::camera::{CameraError, CameraPair, StereoSource};
 use stereopsis::imaging::GreyLines;
 
 /// Bytes of a line in the widest format of a file.
@@ -153,13 +153,19 @@ fn grey_pair(folder: &Path) -> Result<(GrayImage, GrayImage), RealError> {
     let left = GreyLines::<_, RAW_BYTES>::new(left).map_err(|e| failed(e.to_string()))?;
     let right = GreyLines::<_, RAW_BYTES>::new(right).map_err(|e| failed(e.to_string()))?;
     let mut camera = CameraPair::new(left, right, 0).map_err(|e| failed(e.to_string()))?;
+    let [left, right] = frame(&mut camera).map_err(|e| failed(e.to_string()))?;
+    Ok((left, right))
+}
+
+/// The next frame of a source of grey lines, whole: what a matcher is given.
+pub fn frame<C: StereoSource>(camera: &mut C) -> Result<[GrayImage; 2], CameraError<C::Error>> {
     let format = camera.format();
     let (width, height) = (u32::from(format.width), u32::from(format.height));
     let (mut left, mut right) = (GrayImage::new(width, height), GrayImage::new(width, height));
-    camera.start_frame().map_err(|e| failed(e.to_string()))?;
+    camera.start_frame()?;
     let line = usize::from(format.width).max(1);
     for (left, right) in left.chunks_mut(line).zip(right.chunks_mut(line)) {
-        camera.next_lines(left, right).map_err(|e| failed(e.to_string()))?;
+        camera.next_lines(left, right)?;
     }
-    Ok((left, right))
+    Ok([left, right])
 }

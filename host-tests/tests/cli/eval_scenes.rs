@@ -40,6 +40,28 @@ fn scenes_are_matched_as_match_does() {
     assert_eq!(here["mean"], there["mean"]);
 }
 
+/// A picture in two colours of one luma by the weights of Rec. 709, by those of BT.601 not: an image in another
+/// grey than the matcher's has nothing left to match.
+#[test]
+fn no_noise_changes_nothing_of_a_picture_in_colours() {
+    let bench = Bench::new();
+    let (scenes, _) = squares(&bench);
+    for (file, grey) in ["left.png", "right.png"].into_iter().zip(<[_; 2]>::from(pair())) {
+        let colours = image::RgbImage::from_fn(WIDTH, HEIGHT, |x, y| {
+            let red = grey[(x, y)].0[0];
+            image::Rgb([red, (166.0 - 0.2973 * f64::from(red)).round() as u8, 40])
+        });
+        let mut bytes = std::io::Cursor::new(Vec::new());
+        colours.write_to(&mut bytes, ImageFormat::Png).expect("memory");
+        put(&bench, &format!("scenes/squares/{file}"), &bytes.into_inner());
+    }
+    let arguments = ["--scenes", &scenes, "--method", "block"];
+    let plain = evaluated(&arguments);
+    assert!(plain["mean"]["missed"].as_f64().is_some_and(|missed| missed < 0.3), "{plain}");
+    let same = evaluated(&[&arguments[..], &["--altered", "noise:0"]].concat());
+    assert_eq!(by_name(&same), by_name(&plain));
+}
+
 /// The measures of the scenes, by their names.
 fn by_name(evaluated: &Value) -> Vec<(&str, Value)> {
     let scenes = evaluated["scenes"].as_array().expect("a list").iter();

@@ -5,7 +5,7 @@ use crate::input::Pair;
 use image::{DynamicImage, GrayImage};
 use stereopsis_host::eval::Scene;
 use stereopsis_host::mock::MockCamera;
-use stereopsis_host::real::Alteration;
+use stereopsis_host::real::{Alteration, frame};
 
 /// What is wrong with the cameras, as the option says it.
 pub fn alteration(text: &str) -> Result<Alteration, String> {
@@ -28,15 +28,15 @@ pub fn alteration(text: &str) -> Result<Alteration, String> {
     }
 }
 
-/// A scene's pair, altered, and its images in grey; the seed is the noise's.
+/// A scene's pair, altered, and its images in grey as the matcher sees them; the seed is the noise's.
 pub fn pair(
     scene: &Scene,
     altered: Option<Alteration>,
     seed: u64,
 ) -> Result<(Pair, [GrayImage; 2]), Failure> {
     let [left, right] = &scene.images;
-    let pair = Pair::open(left, right)?;
-    let grey = [&pair.left, &pair.right].map(image::imageops::grayscale);
+    let mut pair = Pair::open(left, right)?;
+    let grey = frame(&mut pair.camera)?;
     let Some(altered) = altered else { return Ok((pair, grey)) };
     let grey = altered.apply(grey.each_ref(), seed);
     let [a, b] = grey.each_ref().map(|grey| MockCamera::from_image(DynamicImage::ImageLuma8(grey.clone())));

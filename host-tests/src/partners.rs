@@ -28,6 +28,27 @@ pub fn alone<'a>(left: &'a [PathBuf], right: &'a [PathBuf]) -> Option<(&'a Path,
     by_name.or_else(|| without(left, right, number).filter(|_| are_numbered)).flatten()
 }
 
+/// The right images that belong to the left ones, in the order of those: by their names where all are on both
+/// sides, else by the last numbers in them; in their own order where names do not say which belong together.
+pub fn partners_of(left: &[PathBuf], right: Vec<PathBuf>) -> Vec<PathBuf> {
+    let found = by_key(left, &right, Path::file_stem).or_else(|| by_key(left, &right, number));
+    found.unwrap_or(right)
+}
+
+/// The right images with the keys of the left ones; `None` where not every key is once on both sides.
+fn by_key<'a, K: Ord>(
+    left: &'a [PathBuf],
+    right: &'a [PathBuf],
+    key: impl Fn(&'a Path) -> Option<K>,
+) -> Option<Vec<PathBuf>> {
+    let mut of_right: BTreeMap<K, &PathBuf> =
+        right.iter().filter_map(|path| Some((key(path)?, path))).collect();
+    // Each is taken once.
+    let found: Vec<_> =
+        left.iter().map(|path| of_right.remove(&key(path)?).cloned()).collect::<Option<_>>()?;
+    (found.len() == right.len()).then_some(found)
+}
+
 /// The first image whose key the other side has not; `None` outside where no key is on both sides.
 fn without<'a, K: Ord>(
     left: &'a [PathBuf],
@@ -57,6 +78,21 @@ mod tests {
     fn lone(left: &[&str], right: &[&str]) -> Option<(String, bool)> {
         let (left, right) = (paths(left), paths(right));
         alone(&left, &right).map(|(path, is_left)| (path.display().to_string(), is_left))
+    }
+
+    #[test]
+    fn partners_are_told_by_names_and_numbers_before_their_order() {
+        let ordered = |left: &[&str], right: &[&str]| {
+            let found = partners_of(&paths(left), paths(right));
+            found.iter().map(|path| path.display().to_string()).collect::<Vec<_>>()
+        };
+        assert_eq!(ordered(&["x9_2.png", "x10_1.png"], &["r_1.png", "r_2.png"]), ["r_2.png", "r_1.png"]);
+        // Whole names say more than numbers in them.
+        assert_eq!(ordered(&["a_2.png", "b_2.png"], &["b_2.jpg", "a_2.jpg"]), ["a_2.jpg", "b_2.jpg"]);
+        // Names that say nothing: none on both sides, one twice, and one without a number.
+        assert_eq!(ordered(&["l_1.png", "l_2.png"], &["r_5.png", "r_6.png"]), ["r_5.png", "r_6.png"]);
+        assert_eq!(ordered(&["l_2.png", "l_1.png"], &["r_1.png", "s_1.png"]), ["r_1.png", "s_1.png"]);
+        assert_eq!(ordered(&["l_2.png", "l.png"], &["r_1.png", "r_2.png"]), ["r_1.png", "r_2.png"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The frames of a folder: `left` and `right`, in the order of their names.
 
 use crate::focus::stack::{StackError, images, read};
-use crate::partners::alone;
+use crate::partners::{alone, partners_of};
 use image::GrayImage;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -102,13 +102,14 @@ impl Sequence {
             let source = io::Error::from(io::ErrorKind::NotFound);
             return Err(SequenceError::Folder { path: folder.join("left"), source });
         }
-        let right =
+        let mut right =
             if has_right { images(&right_folder).map_err(failed(&right_folder))? } else { Vec::new() };
         if left.len() < 2 {
             return Err(SequenceError::Count { path: left_folder, found: left.len() });
         }
         if has_right {
             partners(&left, &right, &left_folder, &right_folder)?;
+            right = partners_of(&left, right);
         }
         let first = read(&left[0])?;
         let is_grey = first.colours.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);

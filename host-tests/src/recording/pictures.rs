@@ -3,7 +3,7 @@
 use crate::focus::stack;
 use crate::limits::IMAGE_SIDE;
 use crate::mock::{MockCamera, MockError};
-use crate::partners::alone;
+use crate::partners::{alone, partners_of};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -95,6 +95,7 @@ impl Pictures {
             let (lefts, rights) = (lefts.len(), rights.len());
             return Err(PicturesError::Counts { left: left.into(), lefts, right: right.into(), rights });
         }
+        let rights = partners_of(&lefts, rights);
         let pairs: Vec<_> = lefts.into_iter().zip(rights).collect();
         let (first, _) = MockCamera::open_pair(&pairs[0].0, &pairs[0].1)?;
         let format = LineFormat { pixel: stereopsis::camera::PixelFormat::Grey8, ..first.format() };

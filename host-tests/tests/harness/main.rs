@@ -11,3 +11,4 @@ mod orientation;
 mod pair;
 mod raw_calibration;
 mod scene;
+mod sequences;

@@ -1,7 +1,7 @@
 //! The frames of a focus stack: the images of a folder, in the order of their names.
 
 use crate::limits::IMAGE_SIDE;
-use crate::mock::{MockCamera, MockError};
+use crate::mock::{MockCamera, MockError, significant_bits};
 use alphanumeric_sort::sort_path_slice;
 use image::{GrayImage, RgbImage};
 use std::convert::Infallible;
@@ -29,6 +29,8 @@ pub struct Frame {
 pub struct Stack {
     files: Vec<PathBuf>,
     size: (u32, u32),
+    /// Significant bits of all frames with 16 bits a sample.
+    bits: Option<u8>,
 }
 
 /// Why a folder is no focus stack.
@@ -82,14 +84,16 @@ const MOST: usize = u16::MAX as usize;
 
 impl Stack {
     /// The images of a folder in the order of their names, byte by byte. Hidden files, and files whose ending
-    /// is not that of an image, are passed over.
+    /// is not that of an image, are passed over. Of frames with 16 bits a sample one number of bits is
+    /// significant, so that equal brightness stays equal: all of them are read for it.
     pub fn open(folder: &Path) -> Result<Self, StackError> {
         let files = images(folder).map_err(|source| StackError::Folder { path: folder.into(), source })?;
         if !(FEWEST..=MOST).contains(&files.len()) {
             return Err(StackError::Count { path: folder.into(), found: files.len() });
         }
-        let size = read(&files[0])?.grey.dimensions();
-        Ok(Self { files, size })
+        let size = read(&files[0], None)?.grey.dimensions();
+        let bits = significant_bits(&files);
+        Ok(Self { files, size, bits })
     }
 
     /// How many frames there are, 3 at least.
@@ -119,7 +123,7 @@ impl Stack {
     /// When there is no such frame.
     pub fn frame(&self, index: usize) -> Result<Frame, StackError> {
         let path = &self.files[index];
-        let frame = read(path)?;
+        let frame = read(path, self.bits)?;
         let size = frame.grey.dimensions();
         if size != self.size {
             let first = self.files[0].clone();
@@ -144,10 +148,11 @@ pub fn images(folder: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(files)
 }
 
-/// An image in grey, as the core sees it, and in colour.
-pub fn read(path: &Path) -> Result<Frame, StackError> {
+/// An image in grey, as the core sees it, and in colour; `bits` are the significant ones of 16-bit samples
+/// where others have more than its own.
+pub fn read(path: &Path, bits: Option<u8>) -> Result<Frame, StackError> {
     let failed = |source| StackError::Camera { path: path.into(), source };
-    let camera = MockCamera::open(path)?;
+    let camera = MockCamera::open(path)?.with_bits(bits);
     let colours = camera.picture();
     let mut lines = GreyLines::<_, RAW>::new(camera).map_err(failed)?;
     let format = lines.format();

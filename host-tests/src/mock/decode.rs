@@ -5,7 +5,7 @@ use super::integrity::{self, Integrity};
 use crate::limits::{DECODER_BYTES, IMAGE_SIDE};
 use image::error::{ImageError, LimitErrorKind};
 use image::metadata::Orientation;
-use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use image::{ColorType, DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::fs::File;
 use std::io::{self, Cursor, Read};
 use std::path::Path;
@@ -83,6 +83,26 @@ pub(super) fn read(path: &Path) -> Result<Picture, MockError> {
         }
         Err(e) => Err(failed(e)),
     }
+}
+
+/// Whether a file's header says that its samples have 16 bits; no picture is decoded.
+pub(super) fn is_deep(path: &Path) -> bool {
+    let color = || {
+        let found = std::fs::metadata(path).ok()?;
+        if !found.is_file() || found.len() > MOST_FILE_BYTES {
+            return None;
+        }
+        let mut reader = ImageReader::open(path).ok()?.with_guessed_format().ok()?;
+        // The others have 8 bits.
+        if !matches!(reader.format()?, ImageFormat::Png | ImageFormat::Pnm | ImageFormat::Tiff) {
+            return None;
+        }
+        let mut limits = Limits::no_limits();
+        limits.max_alloc = Some(DECODER_BYTES);
+        reader.limits(limits);
+        Some(reader.into_decoder().ok()?.color_type())
+    };
+    matches!(color(), Some(ColorType::L16 | ColorType::La16 | ColorType::Rgb16 | ColorType::Rgba16))
 }
 
 /// The file's bytes; a device or an endless pipe is not followed.

@@ -6,7 +6,7 @@
 //! * Alpha is dropped: a camera has none. The samples stay as they are, they are not multiplied by it.
 //! * A file with 16 bits a sample may hold the 10 or 12 bits of a sensor. The camera's significant bits are
 //!   those of the largest sample, 8 at least; a pair opened by [`MockCamera::open_pair`] shares the larger of
-//!   both.
+//!   both, and the frames of a stack or a sequence share the largest of all: [`significant_bits`].
 //! * A picture is turned as its metadata (EXIF) asks for: lines come as a viewer shows them.
 
 mod decode;
@@ -19,7 +19,7 @@ use crate::limits::IMAGE_SIDE;
 use decode::Picture;
 use image::{DynamicImage, GrayImage, Rgb, RgbImage};
 use std::convert::Infallible;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use stereopsis::camera::{
     CameraError, ErrorType, FrameStart, LineFormat, LineSource, LineStart, PixelFormat,
 };
@@ -53,12 +53,18 @@ impl MockCamera {
             let (left, right) = (left.as_ref().into(), right.as_ref().into());
             return Err(MockError::Sizes { left, left_size, right, right_size });
         }
-        if let (Some(a), Some(b)) = (bits(l.format.pixel), bits(r.format.pixel)) {
-            let both = a.max(b);
-            l.format.pixel = with_bits(l.format.pixel, both);
-            r.format.pixel = with_bits(r.format.pixel, both);
-        }
+        let (of_left, of_right) = (bits(l.format.pixel), bits(r.format.pixel));
+        (l, r) = (l.with_bits(of_right), r.with_bits(of_left));
         Ok((l, r))
+    }
+
+    /// The camera with so many significant bits of 16, if it has fewer: those of the images beside it.
+    #[must_use]
+    pub fn with_bits(mut self, of_others: Option<u8>) -> Self {
+        if let (Some(own), Some(others)) = (bits(self.format.pixel), of_others) {
+            self.format.pixel = with_bits(self.format.pixel, own.max(others.min(16)));
+        }
+        self
     }
 
     /// A camera on an image in memory; `None` when its samples are floating-point or a side is 0 or over
@@ -119,6 +125,13 @@ impl MockCamera {
             }
         })
     }
+}
+
+/// The significant bits of the images that have 16 bits a sample: those of the largest sample of all. Images
+/// that cannot be read are passed over, and `None` is that there is none. Only the headers of others are read.
+pub fn significant_bits<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Option<u8> {
+    let deep = files.into_iter().filter(|path| decode::is_deep(path));
+    deep.filter_map(|path| bits(MockCamera::open(path).ok()?.format.pixel)).max()
 }
 
 /// The significant bits of a 16-bit format.

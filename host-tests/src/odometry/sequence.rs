@@ -1,6 +1,7 @@
 //! The frames of a folder: `left` and `right`, in the order of their names.
 
 use crate::focus::stack::{StackError, images, read};
+use crate::mock::significant_bits;
 use crate::partners::{alone, partners_of};
 use image::GrayImage;
 use std::io;
@@ -17,6 +18,8 @@ pub struct Sequence {
     right: Vec<PathBuf>,
     size: (u32, u32),
     is_grey: bool,
+    /// Significant bits of all frames with 16 bits a sample.
+    bits: Option<u8>,
 }
 
 /// Why a folder is no sequence: one line that names the file and what would be right.
@@ -81,8 +84,8 @@ pub enum SequenceError {
 
 impl Sequence {
     /// The sequence in a folder: `left` and `right`, or `left` alone for one camera; also KITTI's `image_0`
-    /// and `image_1`, `image_2` and `image_3`, or one camera's images in the folder itself. The first
-    /// frame is read.
+    /// and `image_1`, `image_2` and `image_3`, or one camera's images in the folder itself. Read are
+    /// the first frame and all those with 16 bits a sample, of which one number of bits is significant.
     pub fn open(folder: &Path) -> Result<Self, SequenceError> {
         let failed = |path: &Path| {
             let path = path.to_owned();
@@ -111,9 +114,10 @@ impl Sequence {
             partners(&left, &right, &left_folder, &right_folder)?;
             right = partners_of(&left, right);
         }
-        let first = read(&left[0])?;
+        let first = read(&left[0], None)?;
         let is_grey = first.colours.pixels().all(|p| p.0[0] == p.0[1] && p.0[1] == p.0[2]);
-        Ok(Self { left, right, size: first.grey.dimensions(), is_grey })
+        let bits = significant_bits(left.iter().chain(&right));
+        Ok(Self { left, right, size: first.grey.dimensions(), is_grey, bits })
     }
 
     /// How many frames there are, two at least.
@@ -153,7 +157,7 @@ impl Sequence {
     /// When there is no such frame.
     pub fn frame(&self, index: usize) -> Result<(GrayImage, Option<GrayImage>), SequenceError> {
         let picture = |path: &PathBuf| -> Result<GrayImage, SequenceError> {
-            let grey = read(path)?.grey;
+            let grey = read(path, self.bits)?.grey;
             if grey.dimensions() != self.size {
                 let (size, first) = (grey.dimensions(), self.left[0].clone());
                 return Err(SequenceError::Size { path: path.clone(), size, first, first_size: self.size });

@@ -2,7 +2,7 @@
 
 use crate::focus::stack;
 use crate::limits::IMAGE_SIDE;
-use crate::mock::{MockCamera, MockError};
+use crate::mock::{MockCamera, MockError, significant_bits};
 use crate::partners::{alone, partners_of};
 use std::fs;
 use std::io;
@@ -70,6 +70,8 @@ pub enum PicturesError {
 pub struct Pictures {
     pairs: Vec<(PathBuf, PathBuf)>,
     format: LineFormat,
+    /// Significant bits of all images with 16 bits a sample.
+    bits: Option<u8>,
     frame_us: f64,
     frames: u32,
     current: Option<Pair>,
@@ -96,10 +98,12 @@ impl Pictures {
             return Err(PicturesError::Counts { left: left.into(), lefts, right: right.into(), rights });
         }
         let rights = partners_of(&lefts, rights);
+        let bits = significant_bits(lefts.iter().chain(&rights));
         let pairs: Vec<_> = lefts.into_iter().zip(rights).collect();
         let (first, _) = MockCamera::open_pair(&pairs[0].0, &pairs[0].1)?;
         let format = LineFormat { pixel: stereopsis::camera::PixelFormat::Grey8, ..first.format() };
-        Ok(Self { pairs, format, frame_us: 1e6 / frames_per_second, frames: 0, current: None, failed: None })
+        let frame_us = 1e6 / frames_per_second;
+        Ok(Self { pairs, format, bits, frame_us, frames: 0, current: None, failed: None })
     }
 
     /// How many frames there are before they begin again.
@@ -124,7 +128,8 @@ impl Pictures {
         if (l.format().width, l.format().height) != (self.format.width, self.format.height) {
             return Err(other_size());
         }
-        let lines = |camera| GreyLines::new(camera).map_err(|_| other_size());
+        let lines =
+            |camera: MockCamera| GreyLines::new(camera.with_bits(self.bits)).map_err(|_| other_size());
         CameraPair::new(lines(l)?, lines(r)?, 0).map_err(|_| other_size())
     }
 }

@@ -6,6 +6,7 @@ mod calibrate;
 mod calibration;
 mod chance;
 mod copied;
+mod deep;
 mod mock_camera;
 mod orientation;
 mod pair;

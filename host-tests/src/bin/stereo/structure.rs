@@ -16,6 +16,7 @@ use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::Plan;
 use stereopsis_host::focus::stack::read;
+use stereopsis_host::mock::significant_bits;
 use stereopsis_host::odometry::picture::svg_of;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::output::Staging;
@@ -212,8 +213,9 @@ fn images(args: &StructureArgs) -> Result<Images, Failure> {
         return Err(Failure::new(format!("--images {given}: {count} images; 2 to {MOST} are needed")));
     }
     let mut images = Images { names: Vec::new(), grey: Vec::new(), colours: Vec::new() };
+    let bits = significant_bits(&paths);
     for path in &paths {
-        let frame = read(path)?;
+        let frame = read(path, bits)?;
         let size = frame.grey.dimensions();
         if let Some(first) = images.grey.first().map(GrayImage::dimensions).filter(|&first| first != size) {
             return Err(Failure::new(format!(

@@ -53,7 +53,8 @@ impl Measures {
             let bad = errors.iter().filter(|(_, error, truth)| is_bad(*error, *truth)).count();
             bad as f64 / errors.len().max(1) as f64
         };
-        let sum: f64 = errors.iter().map(|(_, error, _)| f64::from(*error)).sum();
+        // The sum of nothing is minus zero.
+        let sum = errors.iter().map(|(_, error, _)| f64::from(*error)).sum::<f64>() + 0.0;
         let judged = confidence.map(|confidence| {
             let judge = |&(at, error, _): &(usize, f32, f32)| Judged {
                 confidence: confidence.get(at).copied().unwrap_or(0),
@@ -79,7 +80,7 @@ impl Measures {
     /// The mean of several scenes, which count alike; that of the confidence where every scene has one, that
     /// of occluded pixels of the scenes that have some.
     pub fn mean(of: &[Self]) -> Self {
-        let mean = |part: fn(&Self) -> f64| of.iter().map(part).sum::<f64>() / of.len().max(1) as f64;
+        let mean = |part: fn(&Self) -> f64| (of.iter().map(part).sum::<f64>() + 0.0) / of.len().max(1) as f64;
         let occluded: Vec<_> = of.iter().filter_map(|m| m.occluded).collect();
         let sure: Option<Vec<f64>> = of.iter().map(|m| m.confidence_from_oracle).collect();
         Self {
@@ -143,6 +144,12 @@ mod tests {
     fn a_map_without_answers_has_no_error_and_misses_all() {
         let m = Measures::of(&[NONE; 2], &truth(&[1.0; 2], None), None).expect("two are scored");
         assert_eq!((m.score.missed, m.epe_px, m.bad1, m.confidence_from_oracle), (1.0, 0.0, 0.0, None));
+        let none = Measures::mean(&[]);
+        assert!(
+            [m.epe_px, Measures::mean(&[m]).epe_px, none.epe_px, none.score.bad2]
+                .iter()
+                .all(|x| x.is_sign_positive())
+        );
     }
 
     #[test]

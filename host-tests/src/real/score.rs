@@ -35,7 +35,8 @@ impl Score {
 
     /// The mean of several scenes, which count alike; all zero of none.
     pub fn mean(of: &[Self]) -> Self {
-        let mean = |part: fn(&Self) -> f64| of.iter().map(part).sum::<f64>() / of.len().max(1) as f64;
+        // The sum of nothing is minus zero.
+        let mean = |part: fn(&Self) -> f64| (of.iter().map(part).sum::<f64>() + 0.0) / of.len().max(1) as f64;
         Self { density: mean(|s| s.density), bad2: mean(|s| s.bad2), missed: mean(|s| s.missed) }
     }
 }

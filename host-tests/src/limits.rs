@@ -4,7 +4,7 @@
 //! | input | bound |
 //! | --- | --- |
 //! | images | [`IMAGE_SIDE`] columns and rows, [`IMAGE_BYTES`], regular files only |
-//! | truths, results and masks beside them | the same, also through a pipe; float maps of 2^28 pixels |
+//! | truths, results and masks beside them | the same, also through a pipe: float maps of 10^8 pixels |
 //! | calibrations | [`CALIBRATION_BYTES`], elements nested [`DEPTH`] deep |
 //! | tables: matches, positions, poses | [`TABLE_BYTES`]; [`MATCHES`] matches |
 //! | problems of bundle adjustment | [`PROBLEM_BYTES`] |

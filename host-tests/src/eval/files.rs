@@ -111,7 +111,8 @@ impl Truth {
             }
             occluded = Some(behind);
         }
-        if scored.values.iter().all(|value| *value == 0.0) {
+        // Disparities of 0 and less are not scored.
+        if !scored.values.iter().any(|value| *value > 0.0) {
             return Err(EvalError::new(path, "no pixel of it is known and seen by both cameras"));
         }
         Ok(Self { scored, occluded })
@@ -199,6 +200,22 @@ mod tests {
         assert!(said.contains("d.png: has 8 bits") && said.contains("--truth-scale"), "{said}");
         let map = read(DisparityFile { scale: 4.0, depths_of: None }, "d.png", &png).expect("a map");
         assert_eq!(map.values, [f32::INFINITY, 10.0]);
+    }
+
+    #[test]
+    fn a_truth_without_a_disparity_over_0_is_refused() {
+        // 100 px x 0.2 m, doffs 1 px: 40 m is -0.5 px.
+        let rig = RectifiedRig::with_offset(100.0, 0.2, 10.0, 5.0, 11.0).expect("a rig");
+        let file = DisparityFile { scale: 1000.0, depths_of: Some(rig) };
+        let folder = tempfile::tempdir().expect("a temporary folder");
+        let truth = |samples: Vec<u16>| {
+            let path = folder.path().join("z.png");
+            fs::write(&path, png16(samples)).expect("a file");
+            Truth::read(&path, &file, None, 0)
+        };
+        let said = truth(vec![0, 40_000]).expect_err("nothing to score").to_string();
+        assert!(said.ends_with("no pixel of it is known and seen by both cameras"), "{said}");
+        assert_eq!(truth(vec![2000, 40_000]).expect("a truth").scored.values, [9.0, -0.5]);
     }
 
     #[test]

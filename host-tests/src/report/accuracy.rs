@@ -43,7 +43,7 @@ impl Accuracy {
         for (i, &d) in map.disparity.iter().enumerate() {
             let depth_m = truth.depth_m[i];
             if truth.occluded[i] || !depth_m.is_finite() {
-                guesses += usize::from(d.is_some());
+                guesses += usize::from(truth.occluded[i] && d.is_some());
                 continue;
             }
             seen += 1;
@@ -104,5 +104,32 @@ impl Accuracy {
                 _ => f32::INFINITY,
             })
             .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stereopsis::geometry::camera::RectifiedRig;
+    use stereopsis::units::Disparity;
+
+    #[test]
+    fn what_shows_nothing_is_not_occluded() {
+        // A point that both see, one that the left camera sees alone, and two pixels of nothing, of which one
+        // has no answer.
+        let depth_m = vec![2.0, 2.0, f32::INFINITY, f32::INFINITY];
+        let truth = Truth {
+            width: 4,
+            height: 1,
+            disparity: vec![10.0, 10.0, 0.0, 0.0],
+            depth_m,
+            occluded: vec![false, true, false, false],
+            objects: vec![Some(0), Some(0), None, None],
+        };
+        let mut map = DisparityMap::new(4, 1);
+        map.disparity[..3].fill(Disparity::from_pixels(10));
+        let rig = RectifiedRig::new(100.0, 0.2, 2.0, 0.5).expect("a rig");
+        let found = Accuracy::of(&map, &truth, &DepthScale::new(&rig).expect("a scale"));
+        assert_eq!((found.seen_by_both, found.density, found.answers_where_occluded), (1, 1.0, 1));
     }
 }

@@ -6,7 +6,10 @@
 //!
 //! A result takes the place of a regular file or of none: [`check_place`].
 
+mod moves;
+
 use crate::unfinished::{Unfinished, as_a_whole};
+use moves::Moves;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -100,6 +103,8 @@ fn is_of_the_system(name: &Path) -> bool {
 const UNFINISHED: &str = ".stereo-unfinished-";
 /// The file in it that is locked while its run lasts.
 const LOCK: &str = "lock";
+/// Its name before it is locked: no other run takes the folder for abandoned by then.
+const OPEN_LOCK: &str = "lock.new";
 /// How many files the disk is asked for at a time.
 const SYNCING: usize = 16;
 
@@ -141,8 +146,10 @@ impl Staging {
             let failed = |source| OutputError::Folder { path: target.into(), source };
             let files = tempfile::Builder::new().prefix(UNFINISHED).tempdir_in(target);
             let files = files.map_err(|e| failed(plain(e)))?;
-            let lock = File::create(files.path().join(LOCK)).map_err(failed)?;
+            let open = files.path().join(OPEN_LOCK);
+            let lock = File::create(&open).map_err(failed)?;
             lock.lock().map_err(failed)?;
+            fs::rename(open, files.path().join(LOCK)).map_err(failed)?;
             Ok((files, lock, made))
         };
         let ((files, lock, made), unfinished) =
@@ -192,7 +199,11 @@ impl Staging {
             let shares =
                 self.names.chunks(share).map(|names| scope.spawn(move || names.iter().try_for_each(one)));
             let running: Vec<_> = shares.collect();
-            running.into_iter().try_for_each(|share| share.join().unwrap_or(Ok(())))
+            let panicked = || {
+                let source = io::Error::other("it is not known whether its files are on the disk");
+                Err(OutputError::Folder { path: self.target.clone(), source })
+            };
+            running.into_iter().try_for_each(|share| share.join().unwrap_or_else(|_| panicked()))
         })
     }
 
@@ -200,14 +211,27 @@ impl Staging {
     /// have written and this one did not: they go, so that the folder holds one run's results.
     pub fn commit(self, stale: &[&str]) -> Result<(), OutputError> {
         self.sync()?;
-        as_a_whole(|| self.put_all(stale))?;
+        as_a_whole(|| self.put_all(stale).map(Moves::keep))?;
         self.made.keep();
         Ok(())
     }
 
-    /// Moves all files to their places, or none.
-    fn put_all(&self, stale: &[&str]) -> Result<(), OutputError> {
-        let mut moves = Moves { done: Vec::new() };
+    /// Moves the files of several folders to their places, once all are on the disk: of all folders, or of
+    /// none.
+    pub fn commit_all(all: Vec<Self>) -> Result<(), OutputError> {
+        all.iter().try_for_each(Self::sync)?;
+        as_a_whole(|| {
+            let moved: Vec<Moves> = all.iter().map(|one| one.put_all(&[])).collect::<Result<_, _>>()?;
+            moved.into_iter().for_each(Moves::keep);
+            Ok(())
+        })?;
+        all.into_iter().for_each(|one| one.made.keep());
+        Ok(())
+    }
+
+    /// Moves all files to their places, or none; they go back when the moves are dropped.
+    fn put_all(&self, stale: &[&str]) -> Result<Moves, OutputError> {
+        let mut moves = Moves::default();
         let old = self.files.path().join("old");
         fs::create_dir(&old).map_err(|source| OutputError::Folder { path: self.target.clone(), source })?;
         let gone = stale.iter().copied().filter(|name| !self.names.iter().any(|n| n == name));
@@ -226,30 +250,7 @@ impl Staging {
                 moves.rename(&self.files.path().join(name), &place).map_err(failed)?;
             }
         }
-        moves.done.clear();
-        Ok(())
-    }
-}
-
-/// Renames that are taken back when dropped.
-struct Moves {
-    done: Vec<(PathBuf, PathBuf)>,
-}
-
-impl Moves {
-    fn rename(&mut self, from: &Path, to: &Path) -> io::Result<()> {
-        fs::rename(from, to)?;
-        self.done.push((from.into(), to.into()));
-        Ok(())
-    }
-}
-
-impl Drop for Moves {
-    fn drop(&mut self) {
-        for (from, to) in self.done.drain(..).rev() {
-            // Nothing more can be done about a failure while a failure is being handled.
-            let _ = fs::rename(to, from);
-        }
+        Ok(moves)
     }
 }
 

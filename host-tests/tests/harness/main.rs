@@ -9,6 +9,7 @@ mod copied;
 mod deep;
 mod mock_camera;
 mod orientation;
+mod output;
 mod pair;
 mod raw_calibration;
 mod scene;

@@ -98,10 +98,8 @@ impl Place {
             };
             to.write(&place.name, |out| content(out))?;
         }
-        for (_, staging) in elsewhere {
-            staging.commit(&[])?;
-        }
-        Ok(staging.commit(&[])?)
+        let elsewhere = elsewhere.into_iter().map(|(_, staging)| staging);
+        Ok(Staging::commit_all(elsewhere.chain([staging]).collect())?)
     }
 }
 

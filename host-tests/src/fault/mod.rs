@@ -155,7 +155,9 @@ impl<S> Faulty<S> {
             self.record.lose(row, Fault::Dead);
             return Err(CameraError::TimedOut);
         }
-        let fault = self.draw(false).filter(|_| !std::mem::take(&mut self.is_pending));
+        // The call after a bus fault gives the line that stayed, whether a fault is drawn for it or not.
+        let is_pending = std::mem::take(&mut self.is_pending);
+        let fault = self.draw(false).filter(|_| !is_pending);
         let was_given = std::mem::take(&mut self.was_given);
         if let Some(Fault::LineRepeated) = fault.filter(|_| was_given) {
             self.was_given = true;

@@ -7,6 +7,7 @@ mod calibration;
 mod chance;
 mod copied;
 mod deep;
+mod faults;
 mod mock_camera;
 mod orientation;
 mod output;

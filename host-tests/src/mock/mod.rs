@@ -127,8 +127,9 @@ impl MockCamera {
     }
 }
 
-/// The significant bits of the images that have 16 bits a sample: those of the largest sample of all. Images
-/// that cannot be read are passed over, and `None` is that there is none. Only the headers of others are read.
+/// The significant bits of the images that have 16 bits a sample: those of the largest sample of all; `None`
+/// where there is no such image. Of other images the header is read alone, and those that cannot be read are
+/// passed over.
 pub fn significant_bits<'a>(files: impl IntoIterator<Item = &'a PathBuf>) -> Option<u8> {
     let deep = files.into_iter().filter(|path| decode::is_deep(path));
     deep.filter_map(|path| bits(MockCamera::open(path).ok()?.format.pixel)).max()

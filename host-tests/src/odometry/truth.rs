@@ -28,8 +28,8 @@ impl FrameTruth {
     }
 
     /// The poses at the times of the frames, seconds, ascending: between the neighbours in time, along a line
-    /// and about one axis, where both are within one and a half of the frames' intervals. A frame without such
-    /// neighbours has no true pose. Poses without times are those of the frames in their order.
+    /// and about one axis, where both are within one and a half of the frames' intervals. A frame without
+    /// such neighbours has no true pose. Poses without times are those of the frames in their order.
     pub fn at(truth: &Poses, times_s: &[f64]) -> Self {
         let Some(of_truth) = &truth.times_s else { return Self::by_order(truth, times_s.len()) };
         let mut timed: Vec<(f64, &Pose<f64>)> = of_truth.iter().copied().zip(&truth.poses).collect();

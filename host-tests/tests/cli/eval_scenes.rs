@@ -40,8 +40,8 @@ fn scenes_are_matched_as_match_does() {
     assert_eq!(here["mean"], there["mean"]);
 }
 
-/// A picture in two colours of one luma by the weights of Rec. 709, by those of BT.601 not: an image in another
-/// grey than the matcher's has nothing left to match.
+/// A picture in two colours of one luma by the weights of Rec. 709, by those of BT.601 not: an image in
+/// another grey than the matcher's has nothing left to match.
 #[test]
 fn no_noise_changes_nothing_of_a_picture_in_colours() {
     let bench = Bench::new();

@@ -81,8 +81,8 @@ fn times_places_and_quaternions_come_back_as_they_were() {
 
 #[test]
 fn true_poses_are_those_of_the_frames_times() {
-    // Straight ahead by 1 and about Y by 0.1 each second, four poses a second, of which one second is missing;
-    // the order of the lines does not matter.
+    // Straight ahead by 1 and about Y by 0.1 each second, four poses a second, of which one second is
+    // missing; the order of the lines does not matter.
     let at = |s: f64| pose([0.0, 0.1 * s, 0.0], [0.0, 0.0, s]);
     let mut times: Vec<f64> = (0..40).map(|i| 100.0 + 0.25 * f64::from(i)).collect();
     times.retain(|t| *t <= 104.0 || *t >= 105.0);

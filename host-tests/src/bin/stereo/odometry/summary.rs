@@ -42,8 +42,8 @@ pub fn true_poses(args: &OdometryArgs, times: &[f64]) -> Result<Option<FrameTrut
     if args.times.is_none() {
         if lines != frames {
             return Err(Failure::new(format!(
-                "{path}: has {lines} poses with their times, and there are {frames} frames; give --times, the \
-                 times of the frames"
+                "{path}: has {lines} poses with their times, and there are {frames} frames; give --times, \
+                 the times of the frames"
             )));
         }
         return Ok(Some(FrameTruth::by_order(&read, frames)));

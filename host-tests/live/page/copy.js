@@ -35,6 +35,9 @@ function asCommand({ settings, preset, noise, pair, rig, hasDepth }) {
   const notes = isFrame ? [frames] : [];
   const other = others(settings, preset).map((i) => CONTROLS[i].name);
   if (other.length > 0) notes.push(`# ${other.join(", ")}: no options of match; copy as Rust or C`);
+  if (calibration.isTyped && calibrationWords()) {
+    notes.push("# depths are those of the calibration, not of the cameras that were typed");
+  }
   if (hasDepth && rig.offset_px !== 0 && !calibrationWords()) {
     notes.push("# principal points apart: give --calib FILE for depths");
   }

@@ -90,10 +90,11 @@ function rectified(pair) {
   return { ...pair, left, right };
 }
 
-// The options of the program that read the same files.
+// The options of the program that read the same files; none once cameras were typed, unless the pair is
+// rectified by the files, beside which the program takes no numbers.
 function calibrationWords() {
   const { names, told } = calibration;
-  if (!told || calibration.isTyped) return null;
+  if (!told || (calibration.isTyped && !told.is_rectified)) return null;
   const files = names.map((name) => `--calib ${quoted(name)}`);
   const unit = valueOf(UNIT) > 0 ? [`--unit ${UNITS[valueOf(UNIT)]}`] : [];
   return [...files, ...(told.is_rectified ? ["--rectify"] : []), ...unit].join(" ");

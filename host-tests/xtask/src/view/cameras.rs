@@ -50,6 +50,15 @@ pub fn a_calibration_gives_metres_and_rectifies(page: &mut LivePage, stereo: &Pa
     page.set("unit", 3)?;
     told(page, "stereo.yml: OpenCV, by which the pair is rectified")?;
     as_the_program(page, stereo, scene)?;
+    // A pair is rectified by the files though a hand has been at the fields.
+    let focal_px = page.browser.value("Number(byId('focal_px').value)")?.as_f64().unwrap_or(0.0);
+    page.set_number("focal_px", focal_px)?;
+    as_the_program(page, stereo, scene)?;
+    let copied = page.browser.value("calibration.isTyped && byId('copied').value")?;
+    let notes = ["--rectify", "# depths are those of the calibration"];
+    hold(copied.as_str().is_some_and(|text| notes.iter().all(|note| text.contains(note))), || {
+        format!("of typed cameras beside a calibration: {copied}")
+    })?;
     for (name, value) in [("method", 1), ("filter", 2), ("noise", 3)] {
         page.set(name, value)?;
     }

@@ -6,16 +6,28 @@ async function openFiles(files, isEachOne = false) {
   if (!state.core || files.length === 0) return;
   const calibrations = [...files].filter(isCalibration);
   const others = [...files].filter((file) => !isCalibration(file));
-  if (calibrations.length > 0 && others.length > 0) await takeCalibration(calibrations);
-  if (others.length === 0) await calibrate(calibrations);
-  else if (others.length === 1 && others[0].type.startsWith("video/")) await move(moving.play(others[0]));
-  else if (others.length > (isEachOne ? 1 : 2)) await move(moving.playPictures(others, isEachOne));
-  else await take(openPair(others));
+  if (others.length === 0) {
+    await calibrate(calibrations);
+    return;
+  }
+  const isLast = beginOpening();
+  if (calibrations.length > 0) {
+    const isLastCalibration = beginCalibration();
+    await takeCalibration(calibrations, () => isLast() && isLastCalibration());
+    if (!isLast()) return;
+  }
+  if (others.length === 1 && others[0].type.startsWith("video/")) {
+    await move(() => moving.play(others[0], isLast), isLast);
+  } else if (others.length > (isEachOne ? 1 : 2)) {
+    await move(() => moving.playPictures(others, isEachOne, isLast), isLast);
+  } else {
+    await take(openPair(others), null, isLast);
+  }
 }
 
 // Shows a text to be copied, and copies it where the browser lets the page.
 async function copy(words) {
-  if (!state.settings) return;
+  if (!state.settings || !state.planes) return;
   const area = byId("copied");
   area.value = words(state);
   area.select();
@@ -33,12 +45,16 @@ function listen() {
       target.value = "";
     });
   }
-  byId("camera").addEventListener("click", () => state.core && move(moving.look()));
-  byId("cameras").addEventListener("click", () => state.core && move(lookThroughTwo()));
+  byId("camera").addEventListener("click", () => state.core && move((isLast) => moving.look(isLast)));
+  byId("cameras").addEventListener("click", () => state.core && move(lookThroughTwo));
   for (const id of ["camera-left", "camera-right"]) {
-    byId(id).addEventListener("change", () => state.core && move(lookThroughTwo()));
+    byId(id).addEventListener("change", () => state.core && move(lookThroughTwo));
   }
-  byId("stop").addEventListener("click", stopMoving);
+  byId("stop").addEventListener("click", () => {
+    // What is about to begin is given up too.
+    beginOpening();
+    stopMoving();
+  });
   byId("scene").addEventListener("click", () => state.core && takeGiven(DATA.scene));
   byId("restore").addEventListener("click", () => {
     takePreset();

@@ -1,7 +1,8 @@
 // The page: what is opened is matched with what the controls say, and shown.
 
 Object.assign(state,
-  { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, timeMs: 0, fault: null });
+  { core: null, settings: null, preset: null, noise: "none", isRigGiven: false, isPart: false, timeMs: 0,
+    fault: null });
 let measured = 0;
 let isDue = false;
 let toldAt = 0;
@@ -50,8 +51,8 @@ function run() {
   try {
     writeSettings();
     state.settings = Int32Array.from(state.core.settings);
-    match();
-    complain(state.fault);
+    const wrong = match();
+    complain(state.fault ?? wrong);
   } catch (error) {
     complain(error);
     return;
@@ -65,12 +66,14 @@ function run() {
 }
 
 // Matches, with all that may be looked at. Of what moves that is what is looked at now: deviations of all
-// pixels take a third of a frame's time, and confidences another one.
+// pixels take a third of a frame's time, and confidences another one. What is wrong with the cameras, which
+// the other views do without.
 function match() {
   const isSeen = (...views) => !moving.isOn || isWatched() || views.includes(view());
+  state.isPart = moving.isOn;
   state.timeMs = state.core.run(moving.isOn ? cursor.y : -1, isSeen("confidence"));
   cloud.forget();
-  if (isSeen("depth", "points")) tellDepth();
+  return isSeen("depth", "points") ? tellDepth() : null;
 }
 
 // Says how long the frame took, and what it has.
@@ -96,19 +99,27 @@ function markOthers() {
   byId("restore").disabled = other.length === 0;
 }
 
+// Tells the depths by the fields of the cameras; what is wrong with those, or null.
 function tellDepth() {
   for (const { name, input } of RIG) state.rig[name] = Number(input.value);
   const { focal_px: focal, baseline_mm: baseline, offset_px: offset } = state.rig;
   state.hasDepth = focal > 0 && baseline > 0;
   cloud.forget();
-  if (state.hasDepth) state.core.depth(focal, baseline / 1000, offset);
+  if (!state.hasDepth) return null;
+  try {
+    state.core.depth(focal, baseline / 1000, offset);
+    return null;
+  } catch (error) {
+    state.hasDepth = false;
+    return error;
+  }
 }
 
 // Runs once for all that happens before the next picture.
 function later() {
   if (isDue) return;
   isDue = true;
-  requestAnimationFrame(run);
+  requestAnimationFrame(() => isDue && run());
 }
 
 function changed(control) {
@@ -121,14 +132,8 @@ function changed(control) {
   if (RIG.includes(control)) {
     state.isRigGiven = false;
     calibration.isTyped = true;
-    try {
-      complain(null);
-      tellDepth();
-      show();
-    } catch (error) {
-      state.hasDepth = false;
-      complain(error);
-    }
+    complain(tellDepth());
+    show();
     return;
   }
   later();
@@ -139,6 +144,9 @@ function changed(control) {
 function put(pair, rectify = BY_FILES) {
   const { width, height } = pair.left;
   if (state.planes?.width !== width || state.planes?.height !== height) {
+    // The module frees those that there are before it looks for room.
+    state.planes = null;
+    forgetPicture();
     state.planes = state.core.begin(width, height);
     fitPicture(width, height);
     calibration.isDue = calibration.names.length > 0;
@@ -168,16 +176,6 @@ function readAgain(rectify = BY_FILES) {
   run();
 }
 
-// Takes calibration files, for the pair that is there and those that follow.
-async function calibrate(files) {
-  try {
-    await takeCalibration(files);
-    readAgain();
-  } catch (error) {
-    complain(error);
-  }
-}
-
 // Says what is matched.
 function namePair() {
   const { left, right, isOne, of } = state.pair;
@@ -192,90 +190,6 @@ function setRig(rig) {
   if (rig || state.isRigGiven) RIG.forEach(({ name, input }) => (input.value = rig?.[name] ?? ""));
   setCentre(rig?.centre_px);
   state.isRigGiven = rig !== null;
-}
-
-// Takes a pair, which is a promise of one; what is wrong with it is said.
-async function take(promised, rig = null) {
-  stopMoving();
-  try {
-    const pair = await promised;
-    state.fault = null;
-    if (rig) forgetCalibration();
-    put(pair);
-    cloud.reset();
-    if (!calibration.told) setRig(rig);
-    namePair();
-    takePreset();
-    run();
-  } catch (error) {
-    complain(error);
-  }
-}
-
-// Takes a frame of what moves. The first one of a size tells the noise.
-function takeFrame(pair) {
-  const isFirst = state.pair?.of !== pair.of;
-  if (isFirst) state.fault = null;
-  put(pair);
-  if (isFirst) {
-    if (!calibration.told) setRig(null);
-    namePair();
-    takePreset();
-  }
-  run();
-}
-
-const moving = new Moving(takeFrame, (error) => {
-  stopMoving();
-  complain(error);
-});
-
-function stopMoving() {
-  // The deviations of all pixels, of the frame that stays.
-  if (moving.isOn) later();
-  moving.stop();
-  sayMoving(false);
-}
-
-// What changes with every frame is not read out.
-function sayMoving(isMoving) {
-  byId("stop").hidden = !isMoving;
-  for (const id of ["pixel", "figures"]) byId(id).setAttribute("aria-live", isMoving ? "off" : "polite");
-}
-
-// Begins what moves, which is a promise.
-async function move(begun) {
-  try {
-    complain(null);
-    await begun;
-    sayMoving(true);
-  } catch (error) {
-    stopMoving();
-    complain(error);
-  }
-}
-
-// Looks through two cameras, those that are chosen, or the first two.
-async function lookThroughTwo() {
-  const cameras = await moving.cameras();
-  const lists = ["camera-left", "camera-right"].map(byId);
-  lists.forEach((list, i) => {
-    const chosen = cameras.findIndex(({ id }) => id === list.value);
-    const options = cameras.map(({ id, name }) => make("option", { value: id }, name));
-    list.replaceChildren(...options);
-    list.selectedIndex = chosen < 0 ? Math.min(i, cameras.length - 1) : chosen;
-  });
-  if (cameras.length < 2) {
-    throw new Error("There is one camera: two are needed, or one that has both pictures side by side.");
-  }
-  byId("camera-lists").hidden = false;
-  await moving.lookThroughTwo(lists.map((list) => cameras[list.selectedIndex]));
-}
-
-async function takeGiven({ left, right, rig, disparities }) {
-  setValue(CONTROLS[at("disparities")], disparities);
-  const pictures = Promise.all([left, right].map(decodeUrl));
-  await take(pictures.then(([a, b]) => ({ left: a, right: b, isOne: false })), rig);
 }
 
 async function begin() {

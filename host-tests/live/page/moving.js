@@ -14,6 +14,9 @@ class Eye {
   frame(name, count) {
     const { videoWidth, videoHeight: height } = this.video;
     const width = Math.floor(videoWidth / count);
+    if (width > MOST_SIDE || height > MOST_SIDE) {
+      throw new Error(`${name}: is ${width} x ${height}; up to ${MOST_SIDE} x ${MOST_SIDE} are matched.`);
+    }
     if (this.canvas.width !== count * width || this.canvas.height !== height || !this.context) {
       [this.canvas.width, this.canvas.height] = [count * width, height];
       this.context = this.canvas.getContext("2d", { willReadFrequently: true });
@@ -47,8 +50,14 @@ const TIMED = 31;
 const LEAST_MS = 33;
 const KEPT = 48;
 
+// What is thrown for an opening that another one has overtaken, which nobody is told of.
+function goOn(isLast) {
+  if (!isLast()) throw new Error("Something else is opened.");
+}
+
+// What begins something is told by a function whether no other opening came after it.
 class Moving {
-  // `show` is given every pair; `end` is called with what went wrong, or nothing.
+  // `show` is given every pair; `end` is called with what went wrong, and stops it.
   constructor(show, end) {
     this.eyes = [new Eye(), new Eye()];
     [this.show, this.end, this.isOn, this.isTwo, this.times] = [show, end, false, false, []];
@@ -61,18 +70,19 @@ class Moving {
   }
 
   // Plays a file.
-  async play(file) {
+  async play(file, isLast) {
     this.stop();
     this.url = URL.createObjectURL(file);
     this.eyes[0].video.src = this.url;
-    await this.begin([file.name], `${file.name}: is no picture or video that this browser reads.`);
+    await this.begin([file.name], `${file.name}: is no picture or video that this browser reads.`, isLast);
   }
 
   // Shows the pictures of files, pair after pair, and again from the first one.
-  async playPictures(files, isEachOne) {
+  async playPictures(files, isEachOne, isLast) {
     this.stop();
     const frames = isEachOne ? byName(files).map((file) => [file]) : framesOf(files);
     const kept = [await openPair(frames[0])];
+    goOn(isLast);
     [this.isOn, this.times, this.names] = [true, [], frames];
     this.nextPair(frames, kept, 0);
   }
@@ -91,58 +101,60 @@ class Moving {
         const rest = Math.max(0, LEAST_MS - (performance.now() - began));
         setTimeout(() => this.nextPair(frames, kept, (place + 1) % frames.length), rest);
       } catch (error) {
-        if (isOver()) return;
-        this.stop();
-        this.end(error);
+        if (!isOver()) this.end(error);
       }
     });
   }
 
   // Takes what a camera sees that has both pictures side by side.
-  async look() {
+  async look(isLast) {
     this.stop();
-    await this.open(this.eyes[0], { width: { ideal: 1280 } });
-    await this.begin(["camera"], "The camera shows nothing.");
+    await this.open(this.eyes[0], { width: { ideal: 1280 } }, isLast);
+    await this.begin(["camera"], "The camera shows nothing.", isLast);
   }
 
   // The cameras of this machine that the page may look through, once it was asked.
-  async cameras() {
+  async cameras(isLast) {
     this.stop();
-    await this.open(this.eyes[0], true);
+    await this.open(this.eyes[0], true, isLast);
     const devices = await navigator.mediaDevices.enumerateDevices();
+    goOn(isLast);
     this.stop();
     const cameras = devices.filter(({ kind }) => kind === "videoinput");
     return cameras.map(({ deviceId, label }, i) => ({ id: deviceId, name: label || `camera ${i + 1}` }));
   }
 
   // Takes what two cameras see, left and right.
-  async lookThroughTwo(cameras) {
+  async lookThroughTwo(cameras, isLast) {
     this.stop();
     if (cameras[0].id === cameras[1].id) throw new Error("Left and right are one camera: choose two.");
     for (const [i, { id }] of cameras.entries()) {
       const size = { width: { ideal: 640 }, height: { ideal: 480 } };
-      await this.open(this.eyes[i], { deviceId: { exact: id }, ...size });
+      await this.open(this.eyes[i], { deviceId: { exact: id }, ...size }, isLast);
     }
     this.isTwo = true;
-    await this.begin(cameras.map(({ name }) => name), "A camera shows nothing.");
+    await this.begin(cameras.map(({ name }) => name), "A camera shows nothing.", isLast);
   }
 
-  async open(eye, video) {
+  async open(eye, video, isLast) {
+    let stream;
     try {
-      eye.video.srcObject = await navigator.mediaDevices.getUserMedia({ video });
+      stream = await navigator.mediaDevices.getUserMedia({ video });
     } catch {
-      this.stop();
       throw new Error("There is no camera that this page may look through.");
     }
+    if (!isLast()) stream.getTracks().forEach((track) => track.stop());
+    goOn(isLast);
+    eye.video.srcObject = stream;
   }
 
-  async begin(names, fault) {
+  async begin(names, fault, isLast) {
     try {
       await Promise.all(names.map((_, i) => this.eyes[i].video.play()));
     } catch {
-      this.stop();
       throw new Error(fault);
     }
+    goOn(isLast);
     [this.isOn, this.times, this.names] = [true, [], names];
     this.next(names);
   }
@@ -157,7 +169,6 @@ class Moving {
         this.show(this.pair(names));
         this.next(names);
       } catch (error) {
-        this.stop();
         this.end(error);
       }
     });

@@ -39,13 +39,16 @@ function setCentre(centre) {
   setValue(RECTIFY, 0);
 }
 
-// Gives the files to the module; they are in the order of their names, left before right.
-async function takeCalibration(files) {
+// Gives the files to the module, unless they are not wanted any more once they are read, and says whether it
+// did; they are in the order of their names, left before right.
+async function takeCalibration(files, isWanted) {
   const sorted = [...files].sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
   const all = await Promise.all(sorted.map(async (file) => new Uint8Array(await file.arrayBuffer())));
+  if (!isWanted()) return false;
   forgetCalibration();
   sorted.forEach(({ name }, i) => state.core.addFile(name, all[i]));
   Object.assign(calibration, { names: sorted.map(({ name }) => name), isDue: true });
+  return true;
 }
 
 // Reads the files for the pair's size. Throws the module's line.

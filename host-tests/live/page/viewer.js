@@ -36,6 +36,13 @@ function fitPicture(width, height) {
   [cursor.x, cursor.y] = [width >> 1, height >> 1];
 }
 
+// Shows nothing, until there is room for pictures again.
+function forgetPicture() {
+  image = null;
+  context.clearRect(0, 0, canvas.width, canvas.height);
+  byId("legend").replaceChildren();
+}
+
 // Paints the view that is chosen.
 function show() {
   if (!image) return;

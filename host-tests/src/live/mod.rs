@@ -41,7 +41,7 @@ pub const SHARED: [&str; 6] = [
     include_str!("../../live/page/viewer.js"),
 ];
 /// The page's own scripts, which use these and those before them.
-const SCRIPTS: [&str; 9] = [
+const SCRIPTS: [&str; 10] = [
     include_str!("../../live/page/controls.js"),
     include_str!("../../live/page/core.js"),
     include_str!("../../live/page/moving.js"),
@@ -49,6 +49,7 @@ const SCRIPTS: [&str; 9] = [
     include_str!("../../live/page/copy.js"),
     include_str!("../../live/page/rig.js"),
     include_str!("../../live/page/plan.js"),
+    include_str!("../../live/page/open.js"),
     include_str!("../../live/page/listen.js"),
     include_str!("../../live/page/main.js"),
 ];

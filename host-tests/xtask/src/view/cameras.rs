@@ -1,6 +1,6 @@
 //! The live page's cameras: calibration files, one camera, two cameras.
 
-use super::page::{LivePage, failed, hold};
+use super::page::{LivePage, SHOWN, failed, hold};
 use super::program::as_the_program;
 use crate::steps::{Outcome, output_of};
 use std::fs;
@@ -80,6 +80,23 @@ pub fn a_calibration_gives_metres_and_rectifies(page: &mut LivePage, stereo: &Pa
                 is needed";
     hold(said == line, || format!("'{said}' is said, not '{line}'"))?;
     told_of_none(page, "small.yml: not used")
+}
+
+/// Of cameras that cannot be it is said what is wrong, there are no depths, and the other views go on.
+pub fn impossible_ones_leave_the_other_views(page: &mut LivePage) -> Outcome {
+    page.press("scene")?;
+    page.browser.value("new Promise((done) => setTimeout(done, 500))")?;
+    let baseline_mm = page.browser.value("Number(byId('baseline_mm').value)")?.as_f64().unwrap_or(0.0);
+    page.set_number("baseline_mm", 1e42)?;
+    let shown = page.browser.value(SHOWN)?;
+    page.set("method", 0)?;
+    let (said, has_depth) = (page.text("message")?, page.browser.value("state.hasDepth")?);
+    hold(!said.is_empty() && has_depth == false, || format!("of impossible cameras '{said}' is said"))?;
+    hold(page.browser.value(SHOWN)? != shown, || "with impossible cameras the picture stays".to_owned())?;
+    page.set("method", 3)?;
+    page.set_number("baseline_mm", baseline_mm)?;
+    let (said, has_depth) = (page.text("message")?, page.browser.value("state.hasDepth")?);
+    hold(said.is_empty() && has_depth == true, || format!("of the scene's own cameras: {said}"))
 }
 
 /// What is no calibration is named; the built-in scene has its own cameras.

@@ -2,9 +2,9 @@
 
 use super::browser::Browser;
 use super::faults::{what_is_wrong_is_said, without_simd_it_says_so};
-use super::page::{COLOURS, LivePage, failed, hold, url_of};
+use super::page::{COLOURS, LivePage, SHOWN, failed, hold, url_of};
 use super::program::as_the_program;
-use super::{cameras, copied, focus, plan, report, video, wide};
+use super::{cameras, copied, focus, openings, plan, report, video, wide};
 use crate::steps::{Failure, Outcome, output_of};
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
@@ -26,10 +26,6 @@ const MATCHED: [[i64; 6]; 7] = [
 /// openers, 9 buttons, 2 lists of cameras, 2 that unfold, the picture and the text to copy.
 const CONTROLS: usize = 33 + 5 + 14 + 7 + 4 + 9 + 2 + 2 + 2;
 const SEARCH: [&str; 6] = ["method", "filter", "noise", "disparities", "min_disparity", "min_confidence"];
-
-/// A number for what the picture shows.
-const SHOWN: &str = "context.getImageData(0, 0, canvas.width, canvas.height).data.reduce((sum, byte, i) => \
-                     (sum * 31 + byte + i) % 1e9, 0)";
 
 /// The program that serves the page, until this is dropped.
 struct Served {
@@ -76,6 +72,10 @@ pub fn sample(stereo: &Path) -> Outcome {
     every_view_shows_something(&mut page)?;
     keys_and_names_reach_everything(&mut page)?;
     what_is_wrong_is_said(&mut page, folder, &scene)?;
+    cameras::impossible_ones_leave_the_other_views(&mut page)?;
+    openings::the_later_one_counts(&mut page, folder)?;
+    openings::without_room_nothing_is_shown(&mut page, folder)?;
+    openings::large_frames_are_refused(&mut page)?;
     cameras::a_calibration_gives_metres_and_rectifies(&mut page, stereo, &scene)?;
     cameras::a_calibration_that_is_none_is_named(&mut page, &scene)?;
     plan::it_is_that_of_the_program(&mut page, stereo)?;
@@ -83,6 +83,7 @@ pub fn sample(stereo: &Path) -> Outcome {
     cameras::two_cameras_are_matched_frame_by_frame(&mut page)?;
     video::a_video_is_matched_frame_by_frame(&mut page, folder)?;
     video::a_sequence_is_matched_frame_by_frame(&mut page, stereo, &scene)?;
+    video::a_sequence_ends_with_a_whole_frame(&mut page, stereo, folder, &scene)?;
     let requests = page.requests();
     hold(requests == [served.url.as_str()], || format!("the page asks for {requests:?}"))?;
     let thrown = page.thrown();

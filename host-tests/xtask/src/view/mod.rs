@@ -3,10 +3,10 @@
 //! * [`run`]: builds the module and runs `stereo view`. [`kernels`]: the kernel of WebAssembly beside its
 //!   twin.
 //! * [`browser`]: a browser without a window. [`page`]: the live page in it. [`check`]: what the page has to
-//!   do, a step of the tests; [`faults`]: what it has to refuse. [`program`]: what the program says to the
-//!   page's command line; [`copied`]: what compilers say to its other texts; [`plan`], [`cameras`],
-//!   [`video`]: parts of the page; [`report`], [`wide`], [`focus`]: the reports of a run, of one with large
-//!   images, and of a focus stack.
+//!   do, a step of the tests; [`faults`]: what it has to refuse; [`openings`]: which of several counts.
+//!   [`program`]: what the program says to the page's command line; [`copied`]: what compilers say to its
+//!   other texts; [`plan`], [`cameras`], [`video`]: parts of the page; [`report`], [`wide`], [`focus`]: the
+//!   reports of a run, of one with large images, and of a focus stack.
 
 pub mod browser;
 mod cameras;
@@ -14,6 +14,7 @@ mod check;
 mod copied;
 mod faults;
 mod focus;
+mod openings;
 mod page;
 mod plan;
 mod program;

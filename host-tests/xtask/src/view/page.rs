@@ -19,6 +19,10 @@ const READY: &str = "new Promise((done) => { const look = () => state.settings !
 pub const COLOURS: &str =
     "new Set(new Uint32Array(context.getImageData(0, 0, canvas.width, canvas.height).data.buffer)).size";
 
+/// A number for what the picture shows.
+pub const SHOWN: &str = "context.getImageData(0, 0, canvas.width, canvas.height).data\
+                         .reduce((sum, byte, i) => (sum * 31 + byte + i) % 1e9, 0)";
+
 /// The page.
 pub struct LivePage {
     pub browser: Browser,

@@ -152,6 +152,32 @@ pub fn a_sequence_is_matched_frame_by_frame(page: &mut LivePage, stereo: &Path, 
     Ok(())
 }
 
+/// A sequence ends at a picture that is none, which is said; the frame that stays is matched as the program
+/// does it, with the confidences of all pixels, which were not asked for while it moved.
+pub fn a_sequence_ends_with_a_whole_frame(
+    page: &mut LivePage,
+    stereo: &Path,
+    folder: &Path,
+    scene: &Path,
+) -> Outcome {
+    let none = ["l3.png", "r3.png"].map(|name| folder.join(name));
+    for path in &none {
+        fs::write(path, "no picture").map_err(|e| failed(path, &e))?;
+    }
+    page.press("view-disparity")?;
+    page.browser.value("document.activeElement.blur()")?;
+    page.give("pick-two", &[["l2.png", "r2.png"].map(|name| scene.join(name)), none].concat())?;
+    page.browser.value(
+        "new Promise((done) => { const look = () => byId('message').textContent !== '' ? done() : \
+         setTimeout(look, 20); look(); })",
+    )?;
+    as_the_program(page, stereo, scene)?;
+    let (said, is_on) = (page.text("message")?, page.browser.value("moving.isOn || !byId('stop').hidden")?);
+    hold(said == "l3.png: is no picture that this browser reads." && is_on == false, || {
+        format!("at the end of a sequence '{said}' is said")
+    })
+}
+
 /// The disparities that are shown.
 fn disparities(page: &mut LivePage) -> Outcome<Vec<u16>> {
     let bytes = page.plane("disparity")?;

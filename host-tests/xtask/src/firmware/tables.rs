@@ -39,6 +39,8 @@ pub const FIRMWARE: Part = Part { name: "firmware", command: "cargo xtask firmwa
 /// code.
 const WITHIN: f64 = 0.01;
 const WITHIN_OF_ANOTHER_COMPILER: f64 = 0.15;
+/// How far a percentage may lie from the figures', however small it is: a share moves with the other ones.
+const WITHIN_PERCENT: f64 = 0.5;
 
 /// The names of the pictures in the table, in its order. Real pictures are not everybody's and not in it.
 const PICTURES: [&str; 4] = ["blank", "noise", "stripes", "scene"];
@@ -148,34 +150,65 @@ impl Part {
 /// How two parts differ, if they do: in words, or in figures by more than they may. Of a sample, each line
 /// has to be in the old part.
 fn difference(old: &str, new: &str, is_sample: bool) -> Option<String> {
-    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
     let compiler = |text: &str| text.lines().find(|line| line.starts_with("Compiler: ")).map(str::to_owned);
     let within = if compiler(old) == compiler(new) { WITHIN } else { WITHIN_OF_ANOTHER_COMPILER };
-    let lines = |text: &str| {
-        let lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("Compiler: "));
-        lines.map(str::to_owned).collect::<Vec<_>>()
-    };
-    let (old, new) = (lines(old), lines(new));
+    let (old, new) = (Line::all(old), Line::all(new));
     if !is_sample && old.len() != new.len() {
         return Some(format!("the tables have {} lines where {} are due", old.len(), new.len()));
     }
-    let is_near = |a: &str, b: &str| match (a.parse::<f64>(), b.parse::<f64>()) {
-        // Shares of a percent and small counts may differ by a little in themselves.
-        (Ok(a), Ok(b)) => {
-            (a - b).abs() <= within * a.abs().max(b.abs()) || (a - b).abs() <= 0.5 && a.fract() != 0.0
-        }
-        _ => a == b,
-    };
-    let is_same = |a: &str, b: &str| {
-        let (x, y) = (words(a), words(b));
-        x.len() == y.len() && x.iter().zip(&y).all(|(x, y)| is_near(x, y))
-    };
     if is_sample {
-        let missing = new.iter().find(|b| !old.iter().any(|a| is_same(a, b)));
-        return missing.map(|b| format!("no line of the table reads \"{b}\""));
+        let missing = new.iter().find(|b| !old.iter().any(|a| a.is_near(b, within)));
+        return missing.map(|b| format!("no line of the table reads \"{}\"", b.text));
     }
-    let other = old.iter().zip(&new).find(|(a, b)| !is_same(a, b));
-    other.map(|(a, b)| format!("\"{a}\" should read \"{b}\""))
+    let other = old.iter().zip(&new).find(|(a, b)| !a.is_near(b, within));
+    other.map(|(a, b)| format!("\"{}\" should read \"{}\"", a.text, b.text))
+}
+
+/// A line of a part.
+struct Line<'a> {
+    text: &'a str,
+    /// Its words and, of each, whether the cell or the head of its column says that it is a percentage.
+    words: Vec<(&'a str, bool)>,
+}
+
+impl<'a> Line<'a> {
+    /// The lines of a part, but for empty ones and the compiler's.
+    fn all(part: &'a str) -> Vec<Self> {
+        let lines = part.lines().filter(|line| !line.trim().is_empty() && !line.starts_with("Compiler: "));
+        let mut lines = lines.peekable();
+        let (mut all, mut heads) = (Vec::new(), Vec::new());
+        while let Some(text) = lines.next() {
+            if lines.peek().is_some_and(|below| below.starts_with("| ---")) {
+                heads = text.split('|').collect();
+            }
+            let heads = heads.iter().copied().chain(std::iter::repeat(""));
+            let words = text.split('|').zip(heads).flat_map(|(cell, head)| {
+                let is_percentage = [cell, head].iter().any(|text| text.contains('%'));
+                // A line of another number of cells is another line.
+                cell.split_whitespace().chain(["|"]).map(move |word| (word, is_percentage))
+            });
+            all.push(Self { text, words: words.collect() });
+        }
+        all
+    }
+
+    /// Whether the words are the same, and the figures by as much as they may differ.
+    fn is_near(&self, other: &Self, within: f64) -> bool {
+        let mut both = self.words.iter().zip(&other.words);
+        self.words.len() == other.words.len()
+            && both.all(|(&(a, is_percentage), &(b, _))| is_near(a, b, within, is_percentage))
+    }
+}
+
+/// Whether two words are the same, or figures that differ by a share of them at most, or by one unit of the
+/// last digit behind the point.
+fn is_near(a: &str, b: &str, within: f64, is_percentage: bool) -> bool {
+    let (Ok(x), Ok(y)) = (a.parse::<f64>(), b.parse::<f64>()) else { return a == b };
+    let digits = a.split_once('.').map_or(0, |(_, digits)| digits.len());
+    let unit = if digits == 0 { 0.0 } else { 0.1_f64.powi(digits as i32) };
+    let least = if is_percentage { unit.max(WITHIN_PERCENT) } else { unit };
+    // A decimal is a number of two powers, and a hair beside it.
+    (x - y).abs() <= (within * x.abs().max(y.abs())).max(1.001 * least)
 }
 
 #[cfg(test)]
@@ -195,6 +228,17 @@ mod tests {
         assert_eq!(difference(old, &other.replace("1000", "1100")), None);
         assert!(difference(old, &other.replace("1000", "1300")).is_some());
         assert!(difference("| m4 | 0 |\n", "| m4 | 1 |\n").is_some());
+    }
+
+    #[test]
+    fn small_figures_differ_by_their_last_digit_and_percentages_by_half_of_one() {
+        let old = "| n | share, % | of it |\n| --- | --- | --- |\n| 1.96 | 2.5 | 9.9 % |\n\n8.5 of them.\n";
+        let differs = |from: &str, to: &str| difference(old, &old.replace(from, to), false).is_some();
+        assert!(!differs("1.96", "1.97") && !differs("1.96", "1.95"));
+        assert!(differs("1.96", "2.46") && differs("1.96", "1.99") && differs("1.96", "1.9"));
+        assert!(!differs("2.5", "3.0") && !differs("2.5", "2") && differs("2.5", "3.1"));
+        assert!(!differs("9.9", "10.4") && differs("9.9", "10.5"));
+        assert!(!differs("8.5", "8.6") && differs("8.5", "8.7"));
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! Cortex-M4, M7 and M33 have on four bytes and those that a Cortex-M3 has.
 
 use crate::kernels;
+use crate::named;
 use crate::packages;
 use crate::parallel;
 use crate::setup;
@@ -13,6 +14,10 @@ use std::time::Instant;
 /// Tests that are long and see nothing on 64-bit Arm, and in a Cortex-M3's instructions, that the other tests
 /// do not: the rows of the block methods are the same safe code as on the host.
 const SAME_AS_HOST: &[&str] = &["fast_equals_its_twin_at_all_sizes", "block_equals_its_twin_at_all_sizes"];
+
+/// The crate's own tests that every one of them runs: of features, and of what is done to each word along
+/// paths. 32-bit Arm has assembly beside plain Rust too.
+const OWN: [&str; 2] = ["features", "rounds"];
 
 /// A processor that the tests are built for.
 #[derive(Clone, Copy)]
@@ -27,6 +32,8 @@ pub struct Arm {
     flags: &'static str,
     /// Where it is built: flags belong to a target.
     folder: &'static str,
+    /// Which of the crate's own tests are run.
+    own: &'static [&'static str],
     /// Tests that are left out.
     skipped: &'static [&'static str],
 }
@@ -39,6 +46,7 @@ const ARM64: Arm = Arm {
     libraries: "/usr/aarch64-linux-gnu",
     flags: "",
     folder: "arm",
+    own: &OWN,
     skipped: SAME_AS_HOST,
 };
 
@@ -51,6 +59,7 @@ const ARM32: Arm = Arm {
     // One that divides, as the Cortex-M do.
     flags: "--cfg stereopsis_dsp -C target-cpu=cortex-a15",
     folder: "arm",
+    own: &[OWN[0], OWN[1], "armv7em"],
     skipped: &[],
 };
 
@@ -58,6 +67,7 @@ const ARM32_WORDS: Arm = Arm {
     name: "32-bit Arm without instructions on bytes",
     flags: "--cfg stereopsis_thumb2 -C target-cpu=cortex-a15",
     folder: "arm-words",
+    own: &OWN,
     skipped: SAME_AS_HOST,
     ..ARM32
 };
@@ -79,41 +89,48 @@ pub fn run() -> Outcome {
     set_up()?;
     let arms: Vec<_> = others().collect();
     for arm in &arms {
-        for mut tests in arm.tests(&["--no-run"]) {
-            run_command(&mut tests)?;
-        }
+        run_command(arm.kernels().arg("--no-run"))?;
+        run_command(arm.own().arg("--no-run"))?;
     }
     parallel::work(arms, |arm| arm.run()).map(drop)
 }
 
-/// The crate's own tests that are run: of features, of what is done to each word along paths, and of
-/// assembly beside plain Rust.
-const OWN: &[&str] = &["features", "rounds", "armv7em"];
-
 impl Arm {
-    /// The tests of kernels and the crate's own, each with which of them are run.
-    fn tests(&self, arguments: &[&str]) -> [Command; 2] {
-        let own = cargo(&["test", "--locked", "-p", "stereopsis", "--lib"]);
-        [(kernels::emulated(), [].as_slice()), (own, OWN)].map(|(mut tests, names)| {
-            let variable =
-                |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
-            tests.env(variable("LINKER"), self.linker);
-            tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
-            tests.env(variable("RUSTFLAGS"), self.flags);
-            // Other steps build at the same time.
-            tests.env("CARGO_TARGET_DIR", target_dir().join(self.folder));
-            tests.args(["--target", self.target]).args(arguments).args(["--", "--test-threads", "1"]);
-            tests.args(names).args(self.skipped.iter().flat_map(|test| ["--skip", test]));
-            tests
-        })
+    /// The tests of kernels.
+    fn kernels(&self) -> Command {
+        self.with(kernels::emulated())
+    }
+
+    /// The crate's own tests.
+    fn own(&self) -> Command {
+        self.with(cargo(&["test", "--locked", "-p", "stereopsis", "--lib"]))
+    }
+
+    /// Tests for this processor, in its emulator.
+    fn with(&self, mut tests: Command) -> Command {
+        let variable =
+            |what: &str| format!("CARGO_TARGET_{}_{what}", self.target.replace('-', "_").to_uppercase());
+        tests.env(variable("LINKER"), self.linker);
+        tests.env(variable("RUNNER"), format!("{} -L {}", self.emulator, self.libraries));
+        tests.env(variable("RUSTFLAGS"), self.flags);
+        // Other steps build at the same time.
+        tests.env("CARGO_TARGET_DIR", target_dir().join(self.folder));
+        tests.args(["--target", self.target]);
+        tests
+    }
+
+    /// What the tests themselves are told.
+    fn told(&self, mut tests: Command) -> Command {
+        tests.args(["--", "--test-threads", "1"]);
+        tests.args(self.skipped.iter().flat_map(|test| ["--skip", test]));
+        tests
     }
 
     /// Runs the tests, which are built.
     fn run(&self) -> Outcome {
         let started = Instant::now();
-        for mut tests in self.tests(&[]) {
-            run_command(&mut tests)?;
-        }
+        run_command(&mut self.told(self.kernels()))?;
+        named::run(|| self.told(self.own()), self.own)?;
         println!("{} took {:.1} s", self.name, started.elapsed().as_secs_f64());
         Ok(())
     }

@@ -46,6 +46,7 @@ mod header;
 mod kernels;
 mod miri;
 mod mutants;
+mod named;
 mod package;
 mod packages;
 mod parallel;

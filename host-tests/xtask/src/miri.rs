@@ -5,6 +5,7 @@
 //! x86 runs SSE2 and the portable ones, RV64 the portable ones in words of 64 bits, a 32-bit x86 those of
 //! cores without vectors; big-endian processors the crate refuses to compile for.
 
+use crate::named;
 use crate::steps::{Outcome, command, output_of, root, run as run_command, target_dir};
 
 /// Processors that the tests are interpreted for.
@@ -35,9 +36,13 @@ pub fn run() -> Outcome {
 /// Interprets the tests with one of the words in their names.
 fn test(target: &str, of: &[&str], words: &[&str]) -> Outcome {
     let begin = ["run", "nightly", "cargo", "miri", "test", "--locked", "--target", target];
-    let mut miri = command("rustup", &begin);
-    miri.args(["-p", "stereopsis", "--features", "libm/force-soft-floats"]).args(of).arg("--").args(words);
-    // Seeds are read from files.
-    miri.env("MIRIFLAGS", "-Zmiri-disable-isolation");
-    run_command(miri.env("CARGO_TARGET_DIR", root().join(target_dir()).join("miri")))
+    let tests = || {
+        let mut miri = command("rustup", &begin);
+        miri.args(["-p", "stereopsis", "--features", "libm/force-soft-floats"]).args(of).arg("--");
+        // Seeds are read from files.
+        miri.env("MIRIFLAGS", "-Zmiri-disable-isolation");
+        miri.env("CARGO_TARGET_DIR", root().join(target_dir()).join("miri"));
+        miri
+    };
+    named::run(tests, words)
 }

@@ -37,7 +37,7 @@ pub fn soak(frames: u32) -> Outcome {
         if ran.figure("rows_damaged")? != sums.flagged {
             return Err(failed("its counters are not its rows".into()));
         }
-        sums.tell(M4.core, "fast", rate);
+        sums.tell(M4.core, "fast", rate)?;
     }
     Ok(())
 }

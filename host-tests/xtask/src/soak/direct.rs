@@ -27,7 +27,7 @@ pub fn soak<S: Method>(frames: u32) -> Outcome {
         if u64::from(counters.rows) != sums.rows || u64::from(counters.rows_damaged) != sums.flagged {
             return Err(Failure::new(format!("{}, rate {rate}: {counters:?} are not its rows", S::NAME)));
         }
-        sums.tell("camera", S::NAME, rate);
+        sums.tell("camera", S::NAME, rate)?;
         sums.is_flat("camera", S::NAME)?;
     }
     Ok(())

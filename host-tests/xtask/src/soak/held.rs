@@ -81,14 +81,14 @@ impl Sums {
             }
             flagged += u64::from(row.is_flagged);
         }
-        // A frame that nothing was done to gives all of its rows.
-        let is_untouched = record.frame.is_none() && record.lost.is_empty() && record.ended.is_none();
-        if is_untouched && rows.len() != usize::from(lines) {
-            return Err(format!("{} rows of a frame without a fault", rows.len()));
+        // A lost line has a row in its place: only a frame that did not begin or was ended lacks some.
+        let has_begun = record.frame.is_none_or(|fault| fault == Fault::FrameSkipped);
+        if has_begun && record.ended.is_none() && rows.len() != usize::from(lines) {
+            return Err(format!("{} rows of a frame that nothing ended: {record:?}", rows.len()));
         }
         self.frames += 1;
         if self.frames == self.due.div_ceil(4) {
-            self.settled_kb = resident_kb();
+            self.settled_kb = resident_kb()?;
         }
         self.rows += rows.len() as u64;
         self.flagged += flagged;
@@ -117,4 +117,34 @@ pub fn reference<S: Method>() -> Outcome<[Vec<Kept>; 2]> {
     // The first turn is 1.
     let (odd, even) = (frame()?, frame()?);
     Ok([even, odd])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of so many right rows of ten.
+    fn said(rows: usize, record: &Record) -> Result<(), String> {
+        let lost: Vec<u16> = record.lost.iter().map(|&(line, _)| line).collect();
+        let reach = Reach { up: 0, down: 0 };
+        let came = |y| Came { is_flagged: lost.contains(&y), is_right: !lost.contains(&y) };
+        let rows: Vec<_> = (0..10).map(came).take(rows).collect();
+        Sums::new(100).add(&rows, 10, reach, record)
+    }
+
+    #[test]
+    fn only_a_frame_that_was_ended_or_did_not_begin_lacks_rows() {
+        let untouched = Record::default();
+        let lost = Record { lost: vec![(4, Fault::LineDropped)], ..Record::default() };
+        let skipped = Record { frame: Some(Fault::FrameSkipped), ..Record::default() };
+        for record in [&untouched, &lost, &skipped] {
+            assert_eq!(said(10, record), Ok(()));
+            assert!(said(5, record).is_err_and(|line| line.starts_with("5 rows")), "{record:?}");
+        }
+        let ended = Record { ended: Some((5, Fault::FrameShort)), ..lost };
+        assert_eq!(said(5, &ended), Ok(()));
+        for frame in [Fault::FrameStale, Fault::FrameTimesOut, Fault::FrameFails] {
+            assert_eq!(said(0, &Record { frame: Some(frame), ..Record::default() }), Ok(()));
+        }
+    }
 }

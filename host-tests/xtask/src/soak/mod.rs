@@ -81,13 +81,13 @@ impl Sums {
     }
 
     /// What the program's memory grew by since the first quarter of the frames, KB.
-    fn grown_kb(&self) -> u64 {
-        resident_kb().saturating_sub(self.settled_kb)
+    fn grown_kb(&self) -> Outcome<u64> {
+        resident_kb().map(|kb| kb.saturating_sub(self.settled_kb)).map_err(Failure::new)
     }
 
     /// Fails when the memory grew.
     fn is_flat(&self, from: &str, method: &str) -> Outcome {
-        match self.grown_kb() {
+        match self.grown_kb()? {
             0..=MOST_GROWTH_KB => Ok(()),
             grown_kb => Err(Failure::new(format!(
                 "{from}, {method}: memory grew by {grown_kb} KB, {MOST_GROWTH_KB} at most may be"
@@ -96,20 +96,40 @@ impl Sums {
     }
 
     /// A line of the table.
-    fn tell(&self, from: &str, method: &str, rate: f64) {
+    fn tell(&self, from: &str, method: &str, rate: f64) -> Outcome {
         let Self { frames, rows, flagged, damaged_frames, settled_kb, .. } = *self;
-        let grown_kb = self.grown_kb();
+        let grown_kb = self.grown_kb()?;
         println!(
             "{from:8}  {method:6}  {rate:<7}  {frames:6}  {rows:8}  {flagged:8}  {damaged_frames:14}  \
              {settled_kb:6}  {grown_kb:5}  {:.0}",
             self.began.elapsed().as_secs_f64()
         );
+        Ok(())
     }
 }
 
-/// The memory that the program has written to, KB; 0 where the system does not say so.
-fn resident_kb() -> u64 {
-    let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("RssAnon:"));
-    line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(0)
+/// The memory that the program has written to, KB, which Linux tells: without it nothing is known of growth.
+fn resident_kb() -> Result<u64, String> {
+    const STATUS: &str = "/proc/self/status";
+    let status = fs::read_to_string(STATUS).map_err(|e| format!("{STATUS}: {e}"))?;
+    rss_kb(&status).ok_or_else(|| format!("{STATUS} has no memory in a line RssAnon"))
+}
+
+/// The memory that a status names; some is always written to.
+fn rss_kb(status: &str) -> Option<u64> {
+    let line = status.lines().find_map(|line| line.strip_prefix("RssAnon:"))?;
+    line.split_whitespace().next()?.parse().ok().filter(|&kb| kb > 0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::rss_kb;
+
+    #[test]
+    fn memory_that_is_not_told_is_not_none() {
+        assert_eq!(rss_kb("Name:\tsoak\nRssAnon:\t    1234 kB\nRssFile:\t 9 kB\n"), Some(1234));
+        for status in ["", "RssFile: 9 kB\n", "RssAnon:\n", "RssAnon: 0 kB\n"] {
+            assert_eq!(rss_kb(status), None, "{status}");
+        }
+    }
 }

@@ -57,7 +57,7 @@ pub fn soak<S: Method>(frames: u32) -> Outcome {
         if u64::from(counters.rows) != sums.rows || u64::from(counters.rows_damaged) != sums.flagged {
             return Err(failed(format!("{counters:?} are not its rows")));
         }
-        sums.tell("replay", S::NAME, rate);
+        sums.tell("replay", S::NAME, rate)?;
         sums.is_flat("replay", S::NAME)?;
     }
     Ok(())

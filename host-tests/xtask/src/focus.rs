@@ -1,6 +1,6 @@
 //! `cargo xtask focus`: how right depth from focus is on rendered stacks, beside the plain method.
 
-use crate::firmware::tables::{Part, splice};
+use crate::firmware::tables::{Part, Readme, into_readme};
 use crate::steps::{Failure, Outcome};
 use clap::Args;
 use image::GrayImage;
@@ -16,6 +16,9 @@ pub struct Arguments {
     /// Writes the table into docs/performance.md
     #[arg(long)]
     readme: bool,
+    /// Fails when the table of docs/performance.md is another, and writes nothing there
+    #[arg(long, conflicts_with = "readme")]
+    check: bool,
     /// Writes the rendered frames into this folder, with positions.csv and truth.pfm beside them, for
     /// `stereo focus`
     #[arg(long, value_name = "DIR")]
@@ -54,7 +57,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         }
     }
     println!("{table}");
-    if arguments.readme { splice(&PART, &table) } else { Ok(()) }
+    if arguments.readme || arguments.check {
+        into_readme(&PART, &table, Readme::of_check(arguments.check))?;
+    }
+    Ok(())
 }
 
 /// Writes a stack: `frames/`, where the sensor was in each of them, and the true frame of each pixel.

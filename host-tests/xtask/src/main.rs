@@ -13,7 +13,7 @@
 //! * `book` writes the pages of docs/ as a book.
 //! * `altered` measures how right the methods are on altered real images, beside OpenCV.
 //! * `focus` measures how right depth from focus is on rendered stacks.
-//! * `readme` writes the generated parts of docs/performance.md anew, or checks them.
+//! * `readme` writes the tables and pictures that are made of the code alone anew, or checks them.
 //! * `c` tests the C interface alone, one step of `test`.
 //! * `cross` checks the core for all targets and with every feature.
 //! * `publish` checks what a registry would hand out; it publishes nothing.
@@ -108,9 +108,10 @@ enum Chore {
     Focus(focus::Arguments),
     /// Measures where the nanoseconds of a frame go on this machine, by stage.
     Profile(profile::Arguments),
-    /// Writes the generated parts of docs/performance.md anew.
+    /// Writes what is made of the code alone anew: memory, accuracy and false surfaces in
+    /// docs/performance.md, README.md's figures, and two pictures. Other chores make the other tables.
     Readme {
-        /// Writes nothing; fails when a part differs from what would be written.
+        /// Writes nothing; fails when one of them differs from what would be written.
         #[arg(long)]
         check: bool,
     },

@@ -8,7 +8,7 @@
 mod opencv;
 mod table;
 
-use crate::firmware::tables::{Part, splice};
+use crate::firmware::tables::{Part, Readme, into_readme};
 use crate::steps::{Failure, Outcome};
 use clap::Args;
 use image::GrayImage;
@@ -39,6 +39,9 @@ pub struct Arguments {
     /// Writes the first table into docs/performance.md
     #[arg(long, conflicts_with = "without_opencv")]
     readme: bool,
+    /// Fails when the table of docs/performance.md is another, and writes nothing there
+    #[arg(long, conflicts_with_all = ["readme", "without_opencv"])]
+    check: bool,
 }
 
 /// The part of docs/performance.md.
@@ -58,9 +61,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
     if let Some((file, path)) = out {
         keep(file, path, &page).map_err(|e| Failure::new(format!("--out: {}: {e}", path.display())))?;
     }
-    if arguments.readme {
+    if arguments.readme || arguments.check {
         let note = format!("OpenCV {}: {}.", version.unwrap_or_default(), OpenCv::PARAMETERS);
-        splice(&PART, &format!("{}\n{note}\n", table::of(&columns, |score| score.missed)))?;
+        let text = format!("{}\n{note}\n", table::of(&columns, |score| score.missed));
+        into_readme(&PART, &text, Readme::of_check(arguments.check))?;
     }
     Ok(())
 }

@@ -124,7 +124,9 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     let sequence = Sequence::open(&args.sequence)?;
     let cameras = cameras(args, &sequence)?;
     let times = times(args, sequence.len())?;
-    let truth = true_poses(args, &times)?;
+    let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
+    let missing = gap(&files);
+    let truth = true_poses(args, &times, missing.as_ref())?;
     let (place, picture) = Place::with_picture(&args.out, args.picture.as_deref())?;
     let states = args.states.as_deref().map(|path| Place::of("--states", path)).transpose()?;
     if states
@@ -143,8 +145,7 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         let looked = Looked { is_given_twice, ..Looked::of([&left, &right]) };
         refuse_unpaired(&looked, || exchanged(&sequence, cameras.rectification.as_ref()?))?;
     }
-    let files: Vec<_> = (0..sequence.len()).map(|i| sequence.file(i)).collect();
-    if let Some([before, after]) = gap(&files) {
+    if let Some([before, after]) = &missing {
         remark(&format!(
             "warning: frames seem to be missing, the first of them between {} and {}: the way between them \
              is guessed",

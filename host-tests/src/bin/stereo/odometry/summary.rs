@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::rig::rig_line;
 use crate::shared::remark;
 use std::fmt::Write;
+use std::path::PathBuf;
 use stereopsis::geometry::camera::Pose;
 use stereopsis::motion::odometry::State;
 use stereopsis_host::command_line::one_line;
@@ -25,14 +26,27 @@ pub fn beside(trajectory: &Trajectory, truth: &FrameTruth, is_stereo: bool) -> V
     truth.poses.iter().map(moved).collect()
 }
 
-/// The true poses of the frames: at their times where there are some, else line by line.
-pub fn true_poses(args: &OdometryArgs, times: &[f64]) -> Result<Option<FrameTruth>, Failure> {
+/// The true poses of the frames: at their times where there are some, else line by line. Where frames are
+/// missing between two, other lines than frames are refused.
+pub fn true_poses(
+    args: &OdometryArgs,
+    times: &[f64],
+    missing: Option<&[PathBuf; 2]>,
+) -> Result<Option<FrameTruth>, Failure> {
     let Some(path) = &args.truth else { return Ok(None) };
     let (read, frames) = (poses::read(path)?, times.len());
     let (lines, path) = (read.poses.len(), path.display());
     if read.times_s.is_none() {
         if args.times.is_some() && args.format != PoseFormat::Tum {
             return Err(Failure::usage(NO_TIMES));
+        }
+        if let Some([before, after]) = missing.filter(|_| lines != frames) {
+            return Err(Failure::new(format!(
+                "{path}: has {lines} poses, and there are {frames} frames, of which the first that are missing \
+                 are between {} and {}; leave the poses of those out, or give poses with times and --times",
+                before.display(),
+                after.display()
+            )));
         }
         if lines != frames {
             remark(&format!("note: the truth has {lines} poses; as many as both have are compared"));

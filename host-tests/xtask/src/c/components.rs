@@ -27,7 +27,7 @@ const MEMORY: &str = "-Wl,--defsym=flash_start=0,--defsym=flash_bytes=64K,--defs
 /// Builds all of them.
 pub fn run() -> Outcome {
     packages::install(&["python3"])?;
-    setup::targets(&["thumbv7em-none-eabihf", "riscv32imc-unknown-none-elf"])?;
+    setup::targets(&["thumbv7em-none-eabihf", "thumbv8m.main-none-eabi", "riscv32imc-unknown-none-elf"])?;
     let pictures = Pictures::of_scene(SCENE)?;
     let expected = pictures.crc32(MethodName::Block, DISPARITIES)?;
     for (name, program) in [("Zephyr module", zephyr()?), ("Arduino library", arduino()?)] {
@@ -38,7 +38,8 @@ pub fn run() -> Outcome {
         }
     }
     esp_idf()?;
-    platformio()
+    platformio()?;
+    earlier_cmake()
 }
 
 /// A folder of the components.
@@ -73,6 +74,13 @@ fn esp_idf() -> Outcome {
     let build = project("esp_idf", &[format!("-DCOMPONENT={}", component("esp-idf/stereopsis").display())])?;
     run_command(command("cmake", &["--build"]).arg(&build).args(["--target", "stereopsis_library"]))?;
     has_functions(&build.join("stereopsis/libstereopsis.a"))
+}
+
+/// The choices of a project with the policies of an earlier CMake, when it is configured and once more.
+fn earlier_cmake() -> Outcome {
+    let include = root().join("examples/c-firmware/stereopsis.cmake");
+    let build = project("earlier_cmake", &[format!("-DSTEREOPSIS_CMAKE={}", include.display())])?;
+    run_command(command("cmake", &[]).arg(&build))
 }
 
 /// The script of the PlatformIO library in one environment and its command for the Arduino IDE have one

@@ -21,7 +21,7 @@ UNITS = {
     "cortex-m33": "fpv5-sp-d16-hard",
 }
 
-# Cores as compilers spell them, Rust's targets, and whether there is one for floating-point registers as well.
+# Cores as GCC spells them, Rust's targets, and whether there is one for floating-point registers as well.
 TARGETS = {
     "cortex-m0": ("thumbv6m-none-eabi", False),
     "cortex-m0plus": ("thumbv6m-none-eabi", False),
@@ -36,19 +36,43 @@ TARGETS = {
 
 
 def rust_target(cpu, hard_float):
-    """Rust's name of a core."""
-    if cpu not in TARGETS:
+    """Rust's name of a core, whatever it is said to lack."""
+    core = cpu.split("+")[0]
+    if core not in TARGETS:
         raise SystemExit(f"stereopsis: no Rust target for {cpu}; there are {', '.join(TARGETS)}")
-    target, has_registers = TARGETS[cpu]
+    target, has_registers = TARGETS[core]
     return target + ("hf" if hard_float and has_registers else "")
+
+
+def rust_flags(cpu, hard_float):
+    """What a core has beyond its target: cortex-m33+nodsp has no DSP extension, cortex-m55+nomve no vectors.
+
+    Rust's cortex-m33 and cortex-m55 have an FPU, whatever the target is: they are named where the FPU is on, as it is
+    where floats are passed in its registers.
+    """
+    core, *without = cpu.split("+")
+    if core not in ("cortex-m33", "cortex-m55") or "nodsp" in without:
+        return ""
+    if hard_float and core == "cortex-m33":
+        return "-C target-cpu=cortex-m33"
+    if hard_float and "nomve" not in without:
+        return "-C target-cpu=cortex-m55" + (" -C target-feature=-mve.fp" if "nomve.fp" in without else "")
+    return "-C target-feature=+dsp"
+
+
+def core_of(mcu, cpu, flags):
+    """A board's core: its chip where that has a name here, else what GCC compiles for."""
+    asked = [flag.split("=", 1)[1] for flag in flags if flag.startswith("-mcpu=")]
+    return next((name for name in [mcu, *reversed(asked)] if name.split("+")[0] in TARGETS), cpu)
 
 
 def build(repository, cpu, hard_float, choices, folder):
     """Runs cargo; the path of libstereopsis.a."""
     target = rust_target(cpu, hard_float)
     environment = dict(os.environ, **{f"STEREOPSIS_{name}": value for name, value in choices.items()})
-    if cpu in ("cortex-m33", "cortex-m55"):
-        environment["RUSTFLAGS"] = f"{os.environ.get('RUSTFLAGS', '')} -C target-cpu={cpu}".strip()
+    flags = rust_flags(cpu, hard_float)
+    if flags:
+        environment["RUSTFLAGS"] = f"{os.environ.get('RUSTFLAGS', '')} {flags}".strip()
     manifest = os.path.join(repository, "examples", "c-firmware", "library", "Cargo.toml")
     command = ["cargo", "build", "--locked", "--release", "--manifest-path", manifest]
     subprocess.run([*command, "--target", target, "--target-dir", folder], check=True, env=environment)
@@ -73,8 +97,9 @@ def in_platformio(env, here):
     choices = {n: asked[n] or os.environ.get(f"STEREOPSIS_{n}", d) for n, d in CHOICES.items()}
     board = env.BoardConfig()
     mcu = board.get("build.mcu", "")
-    cpu = mcu if mcu in TARGETS else board.get("build.cpu", mcu)
-    hard_float = "-mfloat-abi=hard" in [str(flag) for flag in env.get("CCFLAGS", [])]
+    flags = [str(flag) for flag in env.get("CCFLAGS", [])]
+    cpu = core_of(mcu, board.get("build.cpu", mcu), flags)
+    hard_float = "-mfloat-abi=hard" in flags
     library = build(repository, cpu, hard_float, choices, products(env.subst("$BUILD_DIR")))
     # PlatformIO hands paths and libraries of this environment on to the project, but no macros.
     env.Append(CPPPATH=[os.path.join(repository, "src", "ffi")])
@@ -89,7 +114,8 @@ def for_arduino(repository, here, cpu, hard_float, out):
     choices = {name: os.environ.get(f"STEREOPSIS_{name}", default) for name, default in CHOICES.items()}
     library = build(repository, cpu, hard_float, choices, products(os.path.join(out, "..", "..")))
     # Where the IDE looks for a core's compiled library.
-    place = os.path.join(out, "src", cpu, UNITS.get(cpu, "") if hard_float else "")
+    core = cpu.split("+")[0]
+    place = os.path.join(out, "src", core, UNITS.get(core, "") if hard_float else "")
     os.makedirs(place, exist_ok=True)
     shutil.copy(library, place)
     shutil.copy(os.path.join(here, "library.properties"), out)
@@ -103,7 +129,7 @@ def for_arduino(repository, here, cpu, hard_float, out):
 def main():
     """The command of the Arduino IDE's users."""
     arguments = argparse.ArgumentParser(description="Lays out a library for the Arduino IDE.")
-    arguments.add_argument("--cpu", required=True, choices=TARGETS, help="the core")
+    arguments.add_argument("--cpu", required=True, help=f"the core: {', '.join(TARGETS)}, and +nodsp or +nomve as GCC has it")
     arguments.add_argument("--float", default="soft", choices=["soft", "hard"], help="how floats are passed")
     arguments.add_argument("--out", required=True, help="the library's folder")
     asked = arguments.parse_args()

@@ -2,6 +2,8 @@
 //! PlatformIO and the Arduino IDE. Their build files run in projects that have, in a few lines, what the
 //! build system would; what comes out is linked and gives the host's bits where there is a compiler for it.
 
+mod cores;
+
 use super::program::{Core, cargo_folder, configure, crc32_of, folder, remove};
 use crate::packages;
 use crate::pictures::Pictures;
@@ -39,7 +41,8 @@ pub fn run() -> Outcome {
     }
     esp_idf()?;
     platformio()?;
-    earlier_cmake()
+    earlier_cmake()?;
+    cores::run()
 }
 
 /// A folder of the components.

@@ -1,9 +1,12 @@
-"""Runs a library's extraScript as PlatformIO does, for a board with a Cortex-M4F, and prints what it adds."""
+"""Runs a library's extraScript as PlatformIO does, for a board with a Cortex-M4F, and prints what it adds; for another
+core, with its compiler's flags, only what cargo is asked for."""
 
 import os
+import subprocess
 import sys
 
-script, build_folder = sys.argv[1:]
+script, build_folder, *other = sys.argv[1:]
+cpu, *flags = other or ["cortex-m4", "-mcpu=cortex-m4", "-mfloat-abi=hard"]
 
 
 class Environment(dict):
@@ -17,13 +20,21 @@ class Environment(dict):
         return {"custom_stereopsis_height": "240"}.get(name, default)
 
     def BoardConfig(self):
-        return {"build.mcu": "stm32f407vgt6", "build.cpu": "cortex-m4"}
+        return {"build.mcu": "stm32f407vgt6", "build.cpu": cpu}
 
     def subst(self, text):
         return text.replace("$BUILD_DIR", build_folder)
 
 
-shared, env = Environment(), Environment(CCFLAGS=["-mcpu=cortex-m4", "-mfloat-abi=hard"])
+def show(command, check, env):
+    """Stands for `subprocess.run`."""
+    print(command[command.index("--target") + 1], env.get("RUSTFLAGS", ""))
+    sys.exit()
+
+
+if other:
+    subprocess.run = show
+shared, env = Environment(), Environment(CCFLAGS=flags)
 os.chdir(os.path.dirname(script))
 scope = {"env": env, "Import": lambda name: None, "DefaultEnvironment": lambda: shared}
 with open(script, encoding="utf-8") as text:

@@ -24,7 +24,8 @@ macro_rules! c_api_of_two_views {
         /// 10 000 samples): `inliers` gets 1 for a match whose Sampson distance is up to `threshold_px`, and
         /// 0 for another. Equal seeds give equal results. Fails on fewer than eight matches, on numbers that
         /// are not finite, on a threshold that is not over 0, where not more than seven matches agree, and
-        /// where they are on a plane; `inliers` may have been written then.
+        /// where they are on a plane; `inliers` may have been written then. What is written overlaps nothing
+        /// else.
         #[unsafe(export_name = concat!($($prefix,)? "stereopsis_fundamental"))]
         pub unsafe extern "C" fn stereopsis_fundamental(
             matches: *const CMatch,

@@ -3,7 +3,7 @@
 
 use super::Status;
 use super::config::noise_number;
-use super::state::{checked, share_bytes};
+use super::state::{any_shared, checked, share_bytes};
 use super::status::either;
 use crate::imaging;
 
@@ -86,7 +86,13 @@ pub unsafe fn noise_level(meter: *mut CNoiseMeter, noise: *mut u8, sigma_16ths: 
         Ok(meter) => (noise_number(meter.level()), meter.sigma_16ths().unwrap_or(0)),
         Err(status) => return status,
     };
-    // SAFETY: the caller's promise, and both are aligned.
+    let of_meter = (meter.cast_const().cast(), size_of::<CNoiseMeter>());
+    let of_sigma =
+        (sigma_16ths.cast_const().cast(), if sigma_16ths.is_null() { 0 } else { size_of::<u16>() });
+    if any_shared(&[of_meter, (noise.cast_const().cast(), 1), of_sigma], &[]) {
+        return Status::Overlap;
+    }
+    // SAFETY: the caller's promise, both are aligned, and they are apart.
     unsafe {
         noise.write(level);
         if !sigma_16ths.is_null() {

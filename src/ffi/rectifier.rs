@@ -95,7 +95,10 @@ impl<const W: usize, const N: usize, const SLOTS: usize> Rectifier<W, N, SLOTS> 
             // SAFETY: the caller's promise.
             let state = unsafe { State::<Rectifying<W, N, SLOTS>>::open(handle) }?;
             let read = length.min(STEREOPSIS_RECORD_BYTES);
-            if state.overlaps(record, read) || state.overlaps(rig, 1) || state.overlaps(lines, 1) {
+            let is_shared = !lines.is_null()
+                && share_bytes(rig.cast(), size_of::<CRig>(), lines.cast(), size_of::<usize>());
+            if state.overlaps(record, read) || state.overlaps(rig, 1) || state.overlaps(lines, 1) || is_shared
+            {
                 return Err(Status::Overlap);
             }
             // SAFETY: the caller's promise.

@@ -54,8 +54,8 @@ pub struct CRow {
     pub disparities: *const u16,
     /// `STEREOPSIS_FLAG_` bits of the columns.
     pub flags: *const u8,
-    /// Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
-    /// set. They rank answers, likely wrong ones first, and are no probabilities.
+    /// Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` or
+    /// `min_confidence` is over 0. They rank answers, likely wrong ones first, and are no probabilities.
     pub confidences: *const u8,
 }
 

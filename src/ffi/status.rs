@@ -37,7 +37,7 @@ pub enum Status {
     NotInitialised = -5,
     /// An argument points into the handle's memory, or two results overlap.
     Overlap = -6,
-    /// More elements than an address space holds.
+    /// There are more elements than the function takes.
     TooMany = -7,
     /// The handle's start has to come first.
     NotStarted = -8,

@@ -559,7 +559,7 @@ enum stereopsis_status
    */
   STEREOPSIS_STATUS_OVERLAP = -6,
   /**
-   * More elements than an address space holds.
+   * There are more elements than the function takes.
    */
   STEREOPSIS_STATUS_TOO_MANY = -7,
   /**
@@ -1141,8 +1141,8 @@ typedef struct stereopsis_row {
    */
   const uint8_t *flags;
   /**
-   * Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` is
-   * set. They rank answers, likely wrong ones first, and are no probabilities.
+   * Confidences of the columns, 1 to 207, 0 for no answer; null unless the configuration's `confidence` or
+   * `min_confidence` is over 0. They rank answers, likely wrong ones first, and are no probabilities.
    */
   const uint8_t *confidences;
 } stereopsis_row;
@@ -2443,7 +2443,8 @@ stereopsis_status stereopsis_eight_point(const struct stereopsis_match *matches,
  * 10 000 samples): `inliers` gets 1 for a match whose Sampson distance is up to `threshold_px`, and
  * 0 for another. Equal seeds give equal results. Fails on fewer than eight matches, on numbers that
  * are not finite, on a threshold that is not over 0, where not more than seven matches agree, and
- * where they are on a plane; `inliers` may have been written then.
+ * where they are on a plane; `inliers` may have been written then. What is written overlaps nothing
+ * else.
  */
 stereopsis_status stereopsis_fundamental(const struct stereopsis_match *matches,
                                          size_t count,

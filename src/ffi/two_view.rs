@@ -3,7 +3,7 @@
 
 use super::Status;
 use super::points::CPoint;
-use super::state::{checked, share_bytes};
+use super::state::{any_shared, checked, share_bytes};
 use super::status::either;
 use crate::geometry::camera::{Camera, Pose};
 use crate::geometry::robust::{RobustConfig, RobustError, robust_fundamental};
@@ -189,12 +189,13 @@ pub unsafe fn two_view_fundamental(
     agreement: *mut CAgreement,
 ) -> Status {
     let estimate = || {
-        checked(fundamental)?;
-        checked(inliers)?;
-        checked(agreement)?;
+        checked(fundamental).and(checked(inliers)).and(checked(agreement))?;
         // SAFETY: the caller's promise.
         let seen = unsafe { matches(seen, count) }?;
-        if share_bytes(inliers.cast(), count, seen.as_ptr().cast(), size_of_val(seen)) {
+        let matrix = (fundamental.cast_const().cast(), size_of::<[f32; 9]>());
+        let agreed = (agreement.cast_const().cast(), size_of::<CAgreement>());
+        let read = [(seen.as_ptr().cast(), size_of_val(seen))];
+        if any_shared(&[(inliers.cast_const().cast(), count), matrix, agreed], &read) {
             return Err(Status::Overlap);
         }
         // SAFETY: the caller's promise. All bytes are 0, which are values of `bool`, before they are one.
@@ -204,12 +205,11 @@ pub unsafe fn two_view_fundamental(
         };
         let config = RobustConfig { seed, ..RobustConfig::new(threshold_px) };
         let found = robust_fundamental(seen, &config, inliers)?;
-        let (inliers, rms_px, miss_probability) =
-            (found.inliers as u32, found.rms_px, found.miss_probability);
+        let (rms_px, miss_probability) = (found.rms_px, found.miss_probability);
         // SAFETY: the caller's promise, and they are aligned.
         unsafe {
             fundamental.cast::<[f32; 9]>().write(rows_of(found.fundamental.matrix()));
-            agreement.write(CAgreement { inliers, rms_px, miss_probability });
+            agreement.write(CAgreement { inliers: found.inliers as u32, rms_px, miss_probability });
         }
         Ok(Status::Ok)
     };

@@ -133,7 +133,10 @@ where
             checked(needs_second)?;
             // SAFETY: the caller's promise, it is aligned, and every bit pattern is a configuration.
             let (state, config) = unsafe { (Half::<S, W, D>::open(handle)?, config.read()) };
-            if state.overlaps(needs_lines, 1) || state.overlaps(needs_second, 1) {
+            if state.overlaps(needs_lines, 1)
+                || state.overlaps(needs_second, 1)
+                || needs_lines == needs_second
+            {
                 return Err(Status::Overlap);
             }
             let config = config.checked()?;

@@ -57,7 +57,7 @@ impl<'a> Row<'a> {
     pub const MOST_CONFIDENCE: u8 = Config::MOST_CONFIDENCE;
 
     /// How sure the answer of each column is, from 1 to [`Self::MOST_CONFIDENCE`]; 0 where there is no
-    /// answer. Empty unless [`Config::confidence`](super::Config::confidence) asked for them.
+    /// answer. Empty unless [`Config::confidence`] or a [`Config::min_confidence`] over 0 asks for them.
     ///
     /// With `m` the cost of the best candidate over two px away less the winner's, at most 127, `s` the
     /// greatest difference to the answers 4 and 8 columns left and right, and `t` to those 2 and 4 rows

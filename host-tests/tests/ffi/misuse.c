@@ -117,6 +117,8 @@ static void configurations(void) {
     REFUSED(jump[0], 96, PENALTIES);
     REFUSED(edges[0], 21, PENALTIES);
     REFUSED(noise, 3, NOISE);
+    REFUSED(open_margin, 128, OPEN_MARGIN);
+    REFUSED(min_confidence, 208, MIN_CONFIDENCE);
 
     /* For cameras with noise: what is wrong changes nothing, what is right keeps the search. */
     stereopsis_config before;
@@ -318,6 +320,9 @@ static void noise(void) {
     EXPECT(stereopsis_noise_level(&meter, NULL, &sigma), NULL);
     EXPECT(stereopsis_noise_level(NULL, &level, &sigma), NULL);
     EXPECT(stereopsis_noise_level(&meter, &level, (uint16_t *)MISALIGN(&sigma)), MISALIGNED);
+    EXPECT(stereopsis_noise_level(&meter, (uint8_t *)&sigma, &sigma), OVERLAP);
+    EXPECT(stereopsis_noise_level(&meter, (uint8_t *)&meter, &sigma), OVERLAP);
+    EXPECT(stereopsis_noise_level(&meter, &level, (uint16_t *)(void *)&meter), OVERLAP);
     /* Evenly spread over 16 levels: a deviation of 4.6. */
     for (int y = 0; y < 200; y++) {
         for (size_t i = 0; i < WIDTH; i++) {

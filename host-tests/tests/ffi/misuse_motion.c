@@ -89,6 +89,14 @@ static void maps(void) {
     CHECK(peaks[COLUMNS].found == STEREOPSIS_FOCUS_FEW && peaks[COLUMNS].position_q8 == 0);
     EXPECT(stereopsis_focus_row(h, 65535, peaks, COLUMNS), OK);
     CHECK(peaks[0].found == STEREOPSIS_FOCUS_FEW);
+    /* As many frames as a stack has, of a row each. */
+    wrong = config, wrong.width = 8, wrong.height = 1, wrong.cell_px = 1;
+    EXPECT(stereopsis_focus_start(h, &wrong), OK);
+    for (int frame = 0; frame < 65535; frame++) {
+        EXPECT(stereopsis_focus_begin_frame(h, 1.0f), OK);
+        EXPECT(stereopsis_focus_push(h, frames[0][0], 8), OK);
+    }
+    EXPECT(stereopsis_focus_begin_frame(h, 1.0f), FOCUS_FRAMES);
     EXPECT(stereopsis_focus_deinit(NULL), NULL);
     EXPECT(stereopsis_focus_deinit(h), OK);
     EXPECT(stereopsis_focus_deinit(h), NOT_INITIALISED);

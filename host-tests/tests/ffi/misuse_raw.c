@@ -88,6 +88,11 @@ static void starts(guarded g, stereopsis_rectifier *h) {
     EXPECT(stereopsis_rectifier_start(h, g.memory, WHOLE, WIDTH, HEIGHT, 0.0f, &rig, &lines), OVERLAP);
     EXPECT(stereopsis_rectifier_start(h, r.bytes, WHOLE, WIDTH, HEIGHT, 0.0f, (stereopsis_rig *)(void *)g.memory, NULL), OVERLAP);
     EXPECT(stereopsis_rectifier_start(h, r.bytes, WHOLE, WIDTH, HEIGHT, 0.0f, &rig, (size_t *)(void *)g.memory), OVERLAP);
+    union {
+        stereopsis_rig rig;
+        size_t lines;
+    } both;
+    EXPECT(stereopsis_rectifier_start(h, r.bytes, WHOLE, WIDTH, HEIGHT, 0.0f, &both.rig, &both.lines), OVERLAP);
     EXPECT(stereopsis_rectifier_start(h, r.bytes, WHOLE - 1, WIDTH, HEIGHT, 0.0f, &rig, &lines), RECORD_TOO_SHORT);
     REFUSED(r.bytes, 1, HEIGHT, 0.0f, RECTIFY_SIZE);
     REFUSED(r.bytes, WIDTH, 1, 0.0f, RECTIFY_SIZE);
@@ -104,6 +109,10 @@ static void starts(guarded g, stereopsis_rectifier *h) {
     REFUSED(wrong.bytes, WIDTH, HEIGHT, STEREOPSIS_ALPHA_NATURAL, RECTIFY_VERTICAL);
     wrong = r, put(&wrong, 316, 1.0), seal(&wrong);
     REFUSED(wrong.bytes, WIDTH, HEIGHT, 0.0f, RECTIFY_POSE);
+    wrong = r, put(&wrong, 140, 5000.0), seal(&wrong);
+    REFUSED(wrong.bytes, WIDTH, HEIGHT, 0.0f, RECTIFY_NOTHING);
+    wrong = r, put(&wrong, 60, 9.0), seal(&wrong);
+    REFUSED(wrong.bytes, WIDTH, HEIGHT, 1.0f, RECTIFY_BENT);
     wrong = r, wrong.bytes[10]++, seal(&wrong);
     REFUSED(wrong.bytes, WIDTH, HEIGHT, 0.0f, RAW_SIZES);
     wrong = r, wrong.bytes[8] = wrong.bytes[12] = STEREOPSIS_WIDTH + 1, seal(&wrong);

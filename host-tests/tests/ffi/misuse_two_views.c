@@ -37,10 +37,30 @@ static void fundamentals(stereopsis_match *matches, float *f, uint8_t *inliers) 
     EXPECT(stereopsis_fundamental(matches, 7, 1.0f, 0, f, inliers, &agreement), TOO_FEW_MATCHES);
     EXPECT(stereopsis_fundamental(matches, COUNT, 0.0f, 0, f, inliers, &agreement), MATCH_THRESHOLD);
     EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, all.memory, &agreement), OVERLAP);
+    EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, (float *)matches, inliers, &agreement), OVERLAP);
+    EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, (uint8_t *)f, &agreement), OVERLAP);
+    EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, (uint8_t *)&agreement, &agreement), OVERLAP);
+    EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, inliers, (stereopsis_agreement *)(void *)&f[6]), OVERLAP);
     EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, inliers, (stereopsis_agreement *)MISALIGN(&agreement)), MISALIGNED);
     EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, inliers, &agreement), OK);
     CHECK(agreement.inliers == COUNT && agreement.rms_px < 0.01f);
     for (int i = 0; i < COUNT; i++) CHECK(inliers[i] == 1);
+    volatile float zero = 0.0f;
+    stereopsis_match kept = matches[COUNT - 1];
+    matches[COUNT - 1].v2 = 1.0f / zero;
+    EXPECT(stereopsis_eight_point(matches, COUNT, f), MATCH_NOT_FINITE);
+    EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, inliers, &agreement), MATCH_NOT_FINITE);
+    matches[COUNT - 1] = kept;
+    /* Rows that have nothing to do with each other, and one match many times. */
+    uint32_t random = 1;
+    for (int i = 0; i < COUNT; i++) {
+        random = random * 1664525u + 1013904223u;
+        matches[i].u2 = (float)(random >> 23), matches[i].v2 = (float)(random >> 15 & 255u);
+    }
+    EXPECT(stereopsis_fundamental(matches, COUNT, 0.001f, 0, f, inliers, &agreement), MATCHES_DISAGREE);
+    for (int i = 0; i < COUNT; i++) matches[i] = kept;
+    EXPECT(stereopsis_eight_point(matches, COUNT, f), MATCHES_DEGENERATE);
+    see(matches);
     for (int i = 0; i < COUNT; i++) matches[i].u2 = matches[i].u + 9.0f, matches[i].v2 = matches[i].v;
     EXPECT(stereopsis_fundamental(matches, COUNT, 1.0f, 0, f, inliers, &agreement), MATCHES_ON_PLANE);
     release(all);

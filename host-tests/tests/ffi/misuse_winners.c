@@ -55,6 +55,7 @@ static void refused(void) {
     EXPECT(stereopsis_winners_start(h, &config, &lines, NULL), NULL);
     EXPECT(stereopsis_winners_start(h, (stereopsis_config *)MISALIGN(&config), &lines, &second), MISALIGNED);
     EXPECT(stereopsis_winners_start(h, &config, g.memory, &second), OVERLAP);
+    EXPECT(stereopsis_winners_start(h, &config, &second, &second), OVERLAP);
     wrong.width = WIDTH + 1;
     EXPECT(stereopsis_winners_start(h, &wrong, &lines, &second), WIDTH);
     wrong = config, wrong.disparities = 15;

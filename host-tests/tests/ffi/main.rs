@@ -1,6 +1,7 @@
 //! The C interface, called from Rust: the pipeline's rows, and a status for every misuse of memory.
 //!
-//! `ffi/misuse.c` goes through every status from C, under sanitizers (`cargo xtask c`).
+//! `ffi/misuse.c` and those beside it go through every status from C, under sanitizers
+//! (`cargo xtask test --step "C interface"`).
 #![allow(unsafe_code, reason = "functions with a C ABI are called as C calls them")]
 
 mod after;
@@ -116,7 +117,7 @@ fn rows<S: Method>(config: &matching::Config, [left, right]: &Lines) -> Vec<Foun
             disparities: row.disparities().iter().map(|d| d.raw()).collect(),
             flags: row.flags().iter().map(|f| f.bits()).collect(),
             sigma_px: (0..config.width.into()).map(|x| row.sigma_px(x).unwrap_or(f32::INFINITY)).collect(),
-            confidences: config.confidence.then(|| row.confidences().to_vec()),
+            confidences: (config.confidence || config.min_confidence > 0).then(|| row.confidences().to_vec()),
         });
     };
     for (left, right) in left.iter().zip(right) {
@@ -190,6 +191,25 @@ fn rows_are_those_of_the_pipeline() {
         assert_eq!(found.len(), usize::from(height));
         assert!(found == rows::<Block>(&asked, &lines), "{width}x{height}");
     }
+}
+
+#[test]
+fn a_least_confidence_gives_rows_with_confidences() {
+    let lines = lines(70, 30);
+    let asked = matching::Config { min_confidence: 120, ..matching::Config::for_method::<Block>(70, 30, 32) };
+    let found = c_rows::<Block>(&CConfig { min_confidence: 120, ..config(70, 30, 32) }, &lines);
+    assert!(found == rows::<Block>(&asked, &lines));
+    let confidences = || found.iter().flat_map(|row| row.confidences.as_deref().expect("an array"));
+    assert!(confidences().all(|&sure| sure == 0 || sure >= 120));
+    assert!(confidences().any(|&sure| sure > 0));
+    let of_all = c_rows::<Block>(&CConfig { confidence: 1, ..config(70, 30, 32) }, &lines);
+    assert!(
+        of_all
+            .iter()
+            .flat_map(|row| row.confidences.as_deref().expect("an array"))
+            .any(|&c| c < 120 && c > 0)
+    );
+    assert!(c_rows::<Block>(&config(70, 30, 32), &lines).iter().all(|row| row.confidences.is_none()));
 }
 
 #[test]
@@ -277,6 +297,33 @@ fn every_status_of_the_header_has_a_text() {
             text(code)
         );
     }
+}
+
+#[test]
+fn every_status_of_the_header_is_met_from_c() {
+    let programs = [
+        include_str!("misuse.c"),
+        include_str!("misuse_features.c"),
+        include_str!("misuse_motion.c"),
+        include_str!("misuse_obstacles.c"),
+        include_str!("misuse_queue.c"),
+        include_str!("misuse_raw.c"),
+        include_str!("misuse_two_views.c"),
+        include_str!("misuse_winners.c"),
+    ];
+    // The last word of a line such as `EXPECT(call, STATUS);`, or the whole name.
+    let text = programs.concat();
+    let words: Vec<&str> = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').collect();
+    let is_met = |name: &&str| {
+        let whole = format!("STEREOPSIS_STATUS_{name}");
+        text.contains(&format!(", {name});")) || words.contains(&whole.as_str())
+    };
+    let header = include_str!("../../../src/ffi/stereopsis.h");
+    let names = header.lines().filter_map(|line| line.trim().strip_prefix("STEREOPSIS_STATUS_"));
+    let names: Vec<&str> = names.filter_map(|line| line.split_once(" = ").map(|(name, _)| name)).collect();
+    assert!(names.len() > 50, "the header's statuses were not found");
+    let missing: Vec<&str> = names.into_iter().filter(|name| !is_met(name)).collect();
+    assert!(missing.is_empty(), "{missing:?}");
 }
 
 #[test]

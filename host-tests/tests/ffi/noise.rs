@@ -21,6 +21,9 @@ const LEVELS: [(u8, Noise); 3] = [
 /// A configuration in which every field is another than any preset's.
 fn odd(width: u16, height: u16) -> CConfig {
     CConfig {
+        width,
+        height,
+        disparities: 24,
         min_disparity: 2,
         left_right_px: 77,
         uniqueness_percent: 77,
@@ -41,7 +44,12 @@ fn odd(width: u16, height: u16) -> CConfig {
         fill_step: 77,
         confidence: 77,
         noise: 77,
-        ..config(width, height, 24)
+        speckle_run: 77,
+        fattening_slope: 77,
+        min_confidence: 77,
+        open_run: 77,
+        open_margin: 77,
+        refuse_repeats: 77,
     }
 }
 
@@ -52,6 +60,7 @@ fn rows_of<S: Method>() -> Vec<Vec<Found>> {
     let search = matching::Config {
         min_disparity: 2,
         confidence: true,
+        min_confidence: 77,
         ..matching::Config::for_method::<matching::Block>(width, height, 24)
     };
     let mut all = Vec::new();
@@ -90,7 +99,7 @@ fn rows_for_cameras_with_noise_are_those_of_with_filter() {
 fn without_noise_it_is_the_default() {
     for (preset, _) in PRESETS {
         let [mut wanted, mut found] = [odd(WIDTH as u16, 30); 2];
-        (found.min_disparity, found.disparities, found.confidence) = (0, 32, 0);
+        (found.min_disparity, found.disparities, found.confidence, found.min_confidence) = (0, 32, 0, 0);
         // SAFETY: the pointers are to configurations.
         unsafe {
             assert_eq!(stereopsis_config_default(WIDTH as u16, 30, 32, preset, &raw mut wanted), Status::Ok);

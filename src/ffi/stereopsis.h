@@ -1770,8 +1770,8 @@ typedef struct stereopsis_stixel {
    */
   uint16_t depth_mm;
   /**
-   * Uppermost row of pixels to which the ground is seen from the lowest one on; the picture's height where
-   * it is not.
+   * Uppermost row of pixels to which the ground is seen from the lowest one on; the first row below
+   * the cells where it is not, and 65535 in a frame that is not finished.
    */
   uint16_t seen_row;
   /**

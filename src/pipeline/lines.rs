@@ -21,16 +21,12 @@ pub(super) struct LineGuard {
     /// One more than the last row that the camera reported.
     reported: usize,
     /// Row of the newest line while the lines skipped above it are replaced.
-    held: Option<Held>,
+    held: Option<usize>,
+    /// Whether that line is lost as they are, for its old time stamp: the line above replaces them all. Not a
+    /// part of `held`, whose `None` has to be of zero bytes.
+    is_held_stale: bool,
     /// Whether the camera reported that no line is left.
     is_short: bool,
-}
-
-/// A line below skipped ones.
-struct Held {
-    row: usize,
-    /// Whether it is lost as they are, for its old time stamp: the line above replaces them all.
-    is_stale: bool,
 }
 
 /// Counter of a lost line, and the error if it is one too many.
@@ -47,6 +43,7 @@ impl LineGuard {
             newest_us: 0,
             reported: 0,
             held: None,
+            is_held_stale: false,
             is_short: false,
         }
     }
@@ -89,13 +86,13 @@ impl LineGuard {
         due: usize,
     ) -> Result<(), PipelineError<C::Error>> {
         let height = usize::from(pipeline.config().height);
-        if let Some(Held { row, is_stale }) = self.held {
+        if let Some(row) = self.held {
             pipeline.left.repeat();
             pipeline.right.repeat();
             if row == due {
                 self.held = None;
             }
-            return self.accept(pipeline, row == due && !is_stale, due);
+            return self.accept(pipeline, row == due && !self.is_held_stale, due);
         }
         // A camera may give a line again and again: a frame's worth of that is enough.
         for _ in 0..=height {
@@ -109,11 +106,11 @@ impl LineGuard {
                     LineKind::Due => return self.accept(pipeline, true, due),
                     LineKind::Repeated => continue,
                     LineKind::Below(row) => {
-                        self.held = Some(Held { row, is_stale: false });
+                        (self.held, self.is_held_stale) = (Some(row), false);
                         return self.accept(pipeline, false, due);
                     }
                     LineKind::StaleBelow(row) => {
-                        self.held = Some(Held { row, is_stale: true });
+                        (self.held, self.is_held_stale) = (Some(row), true);
                         pipeline.left.repeat();
                         pipeline.right.repeat();
                         return self.accept(pipeline, false, due);

@@ -16,7 +16,8 @@ pub struct LaserScan {
     pub angle_increment: f32,
     /// Smallest range that can be measured, m: that of the largest disparity that is searched.
     pub range_min: f32,
-    /// Largest range that is reported, m.
+    /// The range up to which a free sector is free, m: that up to which all of them are seen. Obstacles beyond
+    /// it are there, but who takes a scan leaves them out.
     pub range_max: f32,
     /// Number of ranges that were written.
     pub count: usize,
@@ -25,16 +26,19 @@ pub struct LaserScan {
 impl ObstaclesView<'_> {
     /// Writes the ranges of the last frame's sectors from right to left, m, as many as `ranges` holds.
     ///
-    /// Obstacles and drops have their distance, a free sector has infinity ("no return"), and a blind one is
-    /// not a number ("invalid").
+    /// Obstacles and drops have their distance, a free sector has infinity ("no return" up to the largest
+    /// range), and a blind one is not a number ("invalid").
     pub fn laser_scan(&self, ranges: &mut [f32]) -> LaserScan {
         let Some(setup) = self.setup() else { return LaserScan::default() };
-        let sectors = self.sectors();
+        let (sectors, mut free_mm) = (self.sectors(), self.farthest_mm());
         for (place, range) in ranges.iter_mut().enumerate().take(sectors) {
             let sector = self.sector(sectors - 1 - place);
             *range = match sector.state {
                 SectorState::Obstacle | SectorState::Drop => f32::from(sector.range_mm) / 1000.0,
-                SectorState::Free => f32::INFINITY,
+                SectorState::Free => {
+                    free_mm = free_mm.min(sector.seen_mm);
+                    f32::INFINITY
+                }
                 SectorState::Blind => f32::NAN,
             };
         }
@@ -46,7 +50,7 @@ impl ObstaclesView<'_> {
             angle_max: -(first + increment / 2.0),
             angle_increment: increment,
             range_min: f32::from(nearest_mm) / 1000.0,
-            range_max: f32::from(self.farthest_mm()) / 1000.0,
+            range_max: f32::from(free_mm) / 1000.0,
             count: ranges.len().min(sectors),
         }
     }

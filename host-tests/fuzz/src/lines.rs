@@ -91,11 +91,10 @@ fn source<'b>(
     let mut ended = false;
     let wait = || {
         waits += 1;
-        match hand_over(u, producer) {
-            _ if waits > 200 || u.is_empty() => ended = true,
-            Ok(sent) => given.extend(sent),
-            Err(_) => ended = true,
-        }
+        // A line may come while the time ends.
+        let sent = hand_over(u, producer);
+        ended |= waits > 200 || u.is_empty() || sent.is_err();
+        given.extend(sent.ok().flatten());
         !ended
     };
     let mut lines = HandedLines::new(consumer, format, wait).expect("a line fits a slot");

@@ -27,7 +27,7 @@ fn a_calibration_of_another_size_is_said() {
     let q = "Q: [[1, 0, 0, -319.5], [0, 1, 0, -239.5], [0, 0, 0, 500], [0, 0, 12.5, 0]]\n";
     let q = bench.put("q.yml", q.as_bytes()).display().to_string();
     let check = text(&stereo(["calib", "check", "--calib", &q, "--size", "100x100"]).stdout);
-    assert!(check.contains("warning: its principal point"), "{check}");
+    assert!(check.contains("warning: the left principal point"), "{check}");
     bench.put("calib.txt", calibration(96, 48).as_bytes());
     bench.refused(&["calib", "check", "--calib", &calib, "--size", &size], "width says 96");
     let xml = bench.path("none.xml").display().to_string();

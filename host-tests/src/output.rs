@@ -6,7 +6,10 @@
 //!
 //! A result takes the place of a regular file or of none: [`check_place`].
 
+mod error;
 mod moves;
+
+pub use error::OutputError;
 
 use crate::unfinished::{Unfinished, as_a_whole};
 use moves::Moves;
@@ -16,47 +19,6 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tempfile::TempDir;
-
-/// Why results could not be written: one line that names the place and what would be right.
-#[derive(Debug, thiserror::Error)]
-#[non_exhaustive]
-pub enum OutputError {
-    /// The target exists and is no folder.
-    #[error("{}: is not a folder; name a folder for the results", path.display())]
-    NotAFolder {
-        /// The target.
-        path: PathBuf,
-    },
-    /// What stands in the place of a result is a folder's link, a pipe, a device or a socket.
-    #[error("{}: is no regular file; name one, or a new one, for the result", path.display())]
-    NotAFile {
-        /// The place.
-        path: PathBuf,
-    },
-    /// The result would take the place of what is read.
-    #[error("{}: is an input of this run; name another place for the result", path.display())]
-    Input {
-        /// The place.
-        path: PathBuf,
-    },
-    /// The target cannot be made or written to.
-    #[error("{}: cannot be written to ({source}); name a folder that can", path.display())]
-    Folder {
-        /// The folder.
-        path: PathBuf,
-        /// What the operating system says.
-        source: io::Error,
-    },
-    /// A result could not be written; none was kept.
-    #[error("{}: cannot be written ({source}); nothing was kept, make room or name another \
-        folder", path.display())]
-    File {
-        /// The file that was asked for.
-        path: PathBuf,
-        /// What the operating system or the encoder says.
-        source: io::Error,
-    },
-}
 
 /// The files that a run reads, wherever links lead: no result takes the place of one.
 static INPUTS: OnceLock<Vec<PathBuf>> = OnceLock::new();

@@ -59,6 +59,7 @@ mod polled;
 mod queue;
 mod sensors;
 mod signal;
+mod skew;
 mod source;
 mod streams;
 mod sync;
@@ -67,7 +68,7 @@ mod trigger;
 pub use format::{FrameStart, LineFormat, LineStart, PixelFormat};
 pub use handed::HandedLines;
 pub use handoff::{EmptyLine, FilledLine, LineConsumer, LineProducer, LineSlots};
-pub use pair::{CameraPair, PairError, Pairing, RowSkew};
+pub use pair::{CameraPair, PairError, Pairing};
 pub use ping_pong::{Half, PingPong};
 pub use polled::PolledLines;
 #[cfg(feature = "ffi")]
@@ -79,6 +80,7 @@ pub use sensors::{
     Mt9v034Pattern, Mt9v034Window, SensorError,
 };
 pub use signal::{LineListener, LineNotifier, LineSignal};
+pub use skew::RowSkew;
 pub use source::{CameraError, ErrorType, LineFault, LineSource, StereoSource};
 pub use streams::{Interleaved, Mirrored, SideBySide, StreamError};
 pub use trigger::{TriggerError, Triggered};

@@ -140,8 +140,8 @@ pub struct CScan {
     pub angle_increment: f32,
     /// Smallest range that can be measured, m.
     pub range_min: f32,
-    /// The range up to which a free sector is free, m: that up to which all of them are seen. Obstacles beyond
-    /// it are there, but who takes a scan leaves them out.
+    /// The range up to which a free sector is free, m: that up to which all of them are seen. Obstacles
+    /// beyond it are there, but who takes a scan leaves them out.
     pub range_max: f32,
     /// Number of ranges that were written.
     pub count: u32,

@@ -1840,8 +1840,8 @@ typedef struct stereopsis_scan {
    */
   float range_min;
   /**
-   * The range up to which a free sector is free, m: that up to which all of them are seen. Obstacles beyond
-   * it are there, but who takes a scan leaves them out.
+   * The range up to which a free sector is free, m: that up to which all of them are seen. Obstacles
+   * beyond it are there, but who takes a scan leaves them out.
    */
   float range_max;
   /**

@@ -235,8 +235,8 @@ impl<'a> Labelling<'a> {
     }
 
     /// Parallax and deviation of a segment: the mean of its cells, and the root of the answers' variance plus
-    /// the cells'. A drop has the ground's parallax at its edge, which is in the segment's last row of cells or
-    /// up to [`SPREAD`] rows below it.
+    /// the cells'. A drop has the ground's parallax at its edge, which is in the segment's last row of cells
+    /// or up to [`SPREAD`] rows below it.
     fn measured(&self, column: usize, segment: Column, label: usize, sum: i32) -> Option<Column> {
         if segment.cells < FEWEST_CELLS || !matches!(label, OBSTACLE | DROP) {
             return None;

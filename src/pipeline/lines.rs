@@ -234,7 +234,7 @@ enum LineKind {
     Repeated,
     /// The line is of this row below the due one.
     Below(usize),
-    /// The same, with an old time stamp.
+    /// The line is of this row below the due one, with an old time stamp.
     StaleBelow(usize),
     /// The line has an old time stamp.
     Stale,

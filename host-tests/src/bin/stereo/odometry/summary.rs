@@ -42,8 +42,9 @@ pub fn true_poses(
         }
         if let Some([before, after]) = missing.filter(|_| lines != frames) {
             return Err(Failure::new(format!(
-                "{path}: has {lines} poses, and there are {frames} frames, of which the first that are missing \
-                 are between {} and {}; leave the poses of those out, or give poses with times and --times",
+                "{path}: has {lines} poses, and there are {frames} frames, of which the first that are \
+                 missing are between {} and {}; leave the poses of those out, or give poses with times and \
+                 --times",
                 before.display(),
                 after.display()
             )));

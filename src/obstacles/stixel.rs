@@ -245,8 +245,9 @@ impl<'a> Labelling<'a> {
         if label == DROP {
             let ground = self.ground?;
             let right = self.cells.right_16ths(column);
+            // The edge is anywhere in these rows, told at their middle: a uniform distribution. So many
+            // half-rows are half of so many rows.
             let edge = ground.parallax(self.cells.halves(segment.base.into()) + SPREAD, right);
-            // The edge is anywhere in these rows: a uniform distribution.
             let rows = ((ground.slope * (self.cells.cell_height + SPREAD)) >> 16) as u64;
             let sigma = (own * own + rows * rows / 12).isqrt().min(255) as u8;
             return Some(Column { kind: StixelKind::Drop, parallax: edge, sigma, ..segment });

@@ -213,6 +213,7 @@ impl Column<'_> {
                 // The edge is anywhere in the row of cells and the four rows below, half a window.
                 let rows = line.slope * i128::from(self.scene.config.cell_height + 4) / 65_536;
                 let sigma = (sigma * sigma + rows * rows / 12).isqrt().min(255);
+                // Their middle is two rows, four half-rows, below that of the row of cells.
                 found.push(segment(line.at(self.scene.halves(base) + 4, self.right), sigma));
             }
             top = base + 1;

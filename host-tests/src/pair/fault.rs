@@ -158,7 +158,7 @@ pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFau
     let has_texture = own[0].min(own[1]) >= 8 * FEWEST;
     let has_answers = || small_map(pictures).is_some_and(|(map, _)| map.density() > CHANCE);
     // Of a camera that is covered noise is what has features.
-    let is_covered = || Lacks::less_textured(&pictures.map(|picture| Lacks::of(picture, None))).is_some();
+    let is_covered = || Lacks::hardly_textured(&pictures.map(|picture| Lacks::of(picture, None)));
     (has_texture && 16 * matches.in_rows.len() < own[0].min(own[1]) && !has_answers() && !is_covered())
         .then_some(PairFault::TwoScenes)
 }

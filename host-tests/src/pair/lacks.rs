@@ -10,6 +10,10 @@ const LOST_TEXTURE: f64 = 0.25;
 /// The share of a picture that has to have texture for the other one to lack it.
 const LEAST_TEXTURE: f64 = 0.1;
 
+/// The share of a picture that has texture, at most, where its camera may be covered or out of focus: up to
+/// .33 in 382 such images, from .41 on in 210 pairs of different scenes.
+const HARDLY_TEXTURED: f64 = 0.35;
+
 /// Shares of a picture, of what is shown of it.
 pub(super) struct Lacks {
     /// Around those pixels nothing changes along the row by more than noise.
@@ -83,6 +87,11 @@ impl Lacks {
         let shares = [share(left, right), share(right, left)];
         let most = usize::from(shares[1] >= shares[0]);
         (shares[most] > LOST_TEXTURE).then_some(most)
+    }
+
+    /// Whether one of the pictures lacks much of the other one's texture and has hardly any of its own.
+    pub fn hardly_textured(lacks: &[Self; 2]) -> bool {
+        Self::less_textured(lacks).is_some_and(|side| lacks[side].textured() < HARDLY_TEXTURED)
     }
 
     /// The share of the picture that has texture, with the same weight of all rows.

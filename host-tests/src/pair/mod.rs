@@ -108,7 +108,8 @@ impl PairCheck {
         let fault = check.fault.map(|fault| fault.to_string());
         // What is black or white lacks texture, too, and what is seen the wrong way round may seem to.
         let light = exposure_warning(&lacks);
-        let texture = if light.is_none() && fault.is_none() { texture_warning(&lacks) } else { None };
+        let texture =
+            if light.is_none() && fault.is_none() { texture_warning(&lacks, matches) } else { None };
         let nothing = (fault.is_none() && light.is_none() && texture.is_none())
             .then(|| unmatched_warning(matches))
             .flatten();
@@ -153,7 +154,7 @@ fn unmatched_warning(matches: &PairMatches) -> Option<String> {
 }
 
 /// What is to be known about a camera that sees less than the other one.
-fn texture_warning(lacks: &[Lacks; 2]) -> Option<String> {
+fn texture_warning(lacks: &[Lacks; 2], matches: &PairMatches) -> Option<String> {
     let side = Lacks::less_textured(lacks)?;
     let (of, other) = (&lacks[side], &lacks[1 - side]);
     let names = ["left", "right"];
@@ -164,6 +165,8 @@ fn texture_warning(lacks: &[Lacks; 2]) -> Option<String> {
              what covers it",
             of.mean, other.mean
         )
+    } else if matches.in_rows.len() < FEWEST {
+        "is covered, dirty or out of focus, or shows another scene".to_owned()
     } else {
         "is covered, dirty or out of focus".to_owned()
     };

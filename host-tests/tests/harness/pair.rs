@@ -252,6 +252,17 @@ fn a_pair_that_stands_a_little_too_low_is_not_turned() {
 }
 
 #[test]
+fn a_scene_with_less_texture_is_another_scene() {
+    let (street, _) = HardScene::street(1.0, 3).scene.render();
+    let (_, right) = HardScene::white_room(1.0, 4).scene.render();
+    let room = imageops::resize(&right, street.width(), street.height(), imageops::Triangle);
+    for (left, right) in [(&street, &room), (&room, &street)] {
+        let found = check(left, right, 64);
+        assert_eq!(found.fault, Some(PairFault::TwoScenes), "{found:?}");
+    }
+}
+
+#[test]
 fn dots_on_black_are_texture() {
     let mut random = Random::new(9);
     let (mut left, mut right) = (GrayImage::new(640, 480), GrayImage::new(640, 480));

@@ -227,3 +227,23 @@ fn a_match_that_the_lens_has_no_sight_for_is_no_inlier() {
     bench.put("m.csv", format!("{header}\n{}", "1200,240,320,240\n".repeat(20)).as_bytes());
     bench.refused(&arguments(&bench, "pose", &[]), "no sight for any of 20 matches");
 }
+
+#[test]
+fn what_may_agree_by_chance_is_said() {
+    // So many right ones, and ten that are wrong.
+    for (right, is_doubtful) in [(13, true), (18, false)] {
+        let (all, wrong) = (matches(right, false, false), matches(50, true, false));
+        let wrong = wrong.lines().skip(1).step_by(5).map(|line| format!("{line}\n"));
+        let bench = bench(&(all + &wrong.collect::<String>()));
+        for command in ["fundamental", "pose"] {
+            let run = stereo(arguments(&bench, command, &[]));
+            let said = text(&run.stderr);
+            assert!(run.status.success(), "{command}, {right}: {said}");
+            assert_eq!(said.contains("sets of unrelated ones"), is_doubtful, "{command}, {right}: {said}");
+            let json = std::fs::read(bench.path("out/answer.json")).expect("the answer");
+            let answer: Value = serde_json::from_slice(&json).expect("an object");
+            let log10 = answer["log10_false_alarms"].as_f64().expect("a number");
+            assert_eq!((-2.0..0.0).contains(&log10), is_doubtful, "{command}, {right}: {log10}");
+        }
+    }
+}

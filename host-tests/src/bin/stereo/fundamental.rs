@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::place::{Place, json};
-use crate::shared::{RobustArgs, TwoViewMethod, print, rows};
+use crate::shared::{RobustArgs, TwoViewMethod, print, remark, rows};
 use clap::Args;
 use image::RgbImage;
 use nalgebra::Point2;
@@ -113,6 +113,7 @@ pub fn run(args: &FundamentalArgs) -> Result<(), Failure> {
     };
     out.write(|out| json(out, &answer), drawn)?;
     let n = seen.len();
+    warn_of_chance(log10_false_alarms, kept, n, &args.robust);
     print(&format!("{kept} of {n} matches within {} px, {best:.0} us\n", args.robust.threshold))
 }
 
@@ -134,6 +135,20 @@ pub fn by_chance(seen: &[Correspondence<f64>], kept: usize, args: &RobustArgs) -
         ));
     }
     Ok(log10)
+}
+
+/// The logarithm from which on matches may well agree by chance: once in a hundred.
+const DOUBTFUL: f64 = -2.0;
+
+/// Says so where unrelated matches may well agree as much, and the user does not say that these are right.
+pub fn warn_of_chance(log10: f64, kept: usize, matches: usize, args: &RobustArgs) {
+    if log10 > DOUBTFUL && args.method == TwoViewMethod::Ransac {
+        remark(&format!(
+            "warning: {kept} of {matches} matches agree, which up to {:.0} in 100 sets of unrelated ones do by \
+             chance; see whether these images are of one scene",
+            100.0 * 10f64.powf(log10)
+        ));
+    }
 }
 
 /// The images of the matches, for display; refused when a match is outside of its image.

@@ -1,7 +1,7 @@
 //! `stereo pose`: correspondences of known cameras into where the second one stands, and points.
 
 use crate::failure::Failure;
-use crate::fundamental::{by_chance, off_a_line, why};
+use crate::fundamental::{by_chance, off_a_line, warn_of_chance, why};
 use crate::place::json_file;
 use crate::shared::{RobustArgs, TwoViewMethod, print, remark, rows};
 use clap::Args;
@@ -26,8 +26,10 @@ pub const EXAMPLE: &str = "Example:
 Written is one JSON object: essential (3x3 in rows), rotation and translation (a point P' of the second \
                            camera is R P' + t in the first; t has length one, for the scale is not in the \
                            matches), points (in the first camera, the baseline is one; null where a match \
-                           is wrong or its sights are parallel), inliers, and model: essential (samples of \
-                           five), fundamental, or homography when what was seen is on a plane.";
+                           is wrong or its sights are parallel), inliers, model: essential (samples of \
+                           five), fundamental, or homography when what was seen is on a plane, and \
+                           log10_false_alarms (the logarithm of how many such matrices unrelated matches \
+                           would have).";
 
 #[derive(Debug, Args)]
 pub struct PoseArgs {
@@ -55,6 +57,7 @@ struct Answer {
     points: Vec<Option<[f64; 3]>>,
     inliers: Vec<bool>,
     model: &'static str,
+    log10_false_alarms: f64,
 }
 
 impl Answer {
@@ -101,6 +104,7 @@ pub fn run(args: &PoseArgs) -> Result<(), Failure> {
             "note: {file}: the lenses' coefficients describe no sight for {blind} of {n} matches: no inliers"
         ));
     }
+    warn_of_chance(answer.log10_false_alarms, kept, n, &args.robust);
     print(&format!(
         "{kept} of {n} matches within {} px ({rms:.3} px RMS), {points} points, by the {} matrix\n",
         args.robust.threshold, answer.model
@@ -173,7 +177,7 @@ fn solve(
     }
     let Found { rms, essential, pose, inliers, model, .. } = best.ok_or(why)?;
     let kept: Vec<_> = seen.iter().zip(&inliers).filter(|&(_, &inlier)| inlier).map(|(s, _)| *s).collect();
-    by_chance(seen, kept.len(), args)?;
+    let log10_false_alarms = by_chance(seen, kept.len(), args)?;
     off_a_line(&kept)?;
     // Exact matches have the noise of their digits.
     if let Some(degrees) = only_turned(&kept, &essential, [&first, &second], rms.max(0.01)) {
@@ -192,6 +196,7 @@ fn solve(
         points: seen.iter().zip(&inliers).map(point).collect(),
         inliers,
         model,
+        log10_false_alarms,
     };
     Ok((answer, rms))
 }

@@ -245,15 +245,11 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone());
             // On a large pattern nothing was filled.
-            let (fours, rest) = view::<PixelFlags, u8>(flags).as_chunks();
-            let mut all = 0;
-            for four in fours {
+            let words = view::<PixelFlags, u32>(flags);
+            let mut all = if size_of_val(words) == places.len() { 0 } else { FILLED };
+            for word in words {
                 keep_scalar_loop();
-                all |= u32::from_le_bytes(*four);
-            }
-            for &bits in rest {
-                keep_loop();
-                all |= u32::from(bits);
+                all |= word;
             }
             if all & FILLED != 0 {
                 for (flags, answer) in flags.iter_mut().zip(part_mut(answers, places)) {

@@ -11,7 +11,7 @@
 //!   for the usual numbers of candidates.
 //! * `left_right`, `answers`: winners into answers; `fattening`: those refused that spread; `smooth`: these
 //!   averaged; `speckle`: their support counted, which all methods share; `vertical`: answers averaged down
-//!   the columns; `fill`: small gaps closed.
+//!   the columns.
 //! * `sgm`: costs along paths.
 //!
 //! The compiler has no instructions on four bytes, and keeps too little in registers: the loops over pixels
@@ -21,13 +21,12 @@
 //! assembly's (r6, r7) are kept on the stack.
 //!
 //! The work is the same for every picture, but for a few instructions where a winner is at an end of the
-//! search.
+//! search and where a gap is filled.
 
 mod answers;
 mod census;
 mod columns;
 mod fattening;
-mod fill;
 mod left_right;
 mod rows;
 pub(super) mod sgm;
@@ -41,7 +40,7 @@ use super::isa::{Isa, sole_kernel};
 use super::loops::keep_scalar_loop;
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, PathWork, STEP, SmoothWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, Guide, PathWork, STEP, SmoothWork,
     SpeckleWork, WindowWork,
 };
 use super::{TABLE_WORDS, TABLE_WORDS_OF_EIGHT};
@@ -132,11 +131,6 @@ impl Isa for Backend {
     #[inline(always)]
     fn refuse_fattening(self, work: FatteningWork<'_>) {
         fattening::refuse(work);
-    }
-
-    #[inline(always)]
-    fn fill(self, work: FillWork<'_>) {
-        fill::fill(work);
     }
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 //! A right column keeps the cost above 8 bits of the winner, over the smallest disparity; all ones while
 //! nobody offered.
 
-use crate::matching::backend::loops::{fill_bytes, keep_loop};
+use crate::matching::backend::loops::{fill_row, keep_loop};
 use crate::units::PixelFlags;
 
 /// Offers every winner to its partner, each by its cost above 8 bits of its disparity, and that disparity.
@@ -13,7 +13,7 @@ use crate::units::PixelFlags;
 /// partner is the first right column.
 #[inline(always)]
 pub(super) fn offer(winners: impl Iterator<Item = (u32, u8)>, right: &mut [u16]) {
-    fill_bytes(right, u8::MAX);
+    fill_row(right, u16::MAX);
     for (x, (key, disparity)) in winners.enumerate() {
         keep_loop();
         if let Some(kept) = right.get_mut(x.wrapping_sub(usize::from(disparity))) {

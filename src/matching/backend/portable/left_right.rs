@@ -1,7 +1,7 @@
 //! The left-right check and the sub-pixel fit, pixel by pixel.
 
 use super::{consistency, subpixel};
-use crate::matching::backend::loops::{fill_bytes, keep_loop, keep_scalar_loop};
+use crate::matching::backend::loops::{fill_row, keep_loop, keep_scalar_loop};
 use crate::matching::backend::parameters::MethodParameters;
 use crate::matching::backend::work::{AnswerWork, Rules};
 use crate::matching::memory::record::WinnerRecord;
@@ -32,7 +32,7 @@ fn offer(winners: &[Winner], right: &mut [u16]) {
 fn offer_compared(winners: &[Winner], [left, of_right]: [&[u8]; 2], right: &mut [u16]) {
     let count = of_right.len().min(right.len());
     let (Some(of_right), Some(right)) = (of_right.get(..count), right.get_mut(..count)) else { return };
-    fill_bytes(right, u8::MAX);
+    fill_row(right, u16::MAX);
     for (x, (winner, &left)) in winners.iter().zip(left).enumerate() {
         keep_loop();
         let disparity = winner.disparity();

@@ -44,7 +44,7 @@ use super::portable::{self, sgm};
 use super::work::{CensusWork, CostWork, EdgeWork, Guide, PathWork, SpeckleWork, WindowWork};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::{part, split_mut};
-use crate::matching::memory::views::view_mut;
+use crate::matching::memory::views::{Plain, view_mut};
 use crate::matching::memory::winners::Select;
 use crate::units::Disparity;
 use columns::Columns;
@@ -62,6 +62,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn kernel(self) -> Kernel {
         Kernel::Rvv
+    }
+
+    #[inline(always)]
+    fn fill_bytes<T: Plain>(self, row: &mut [T], byte: u8) {
+        fill(view_mut(row), byte);
     }
 
     #[inline(always)]

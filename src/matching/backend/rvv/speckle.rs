@@ -1,9 +1,10 @@
 //! Support counted and speckle dropped, many answers at a time.
 
-use crate::matching::backend::loops::copy_row;
+use super::rows::copy;
 use crate::matching::backend::portable::speckle::ROWS;
 use crate::matching::backend::work::SpeckleWork;
 use crate::matching::memory::rings::LOOK_AHEAD;
+use crate::matching::memory::views::{view, view_mut};
 use crate::units::PixelFlags;
 use core::arch::asm;
 
@@ -13,7 +14,7 @@ use core::arch::asm;
 pub(super) fn speckle(work: SpeckleWork<'_>) {
     let SpeckleWork { here, above, lengths, kept, flags, answers, finished, step, pixels, run } = work;
     if let Some(answers) = answers {
-        copy_row(answers, finished);
+        copy(view(answers), view_mut(finished));
     }
     let lengths = lengths.half_words();
     let count = here.len();

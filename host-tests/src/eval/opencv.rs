@@ -37,6 +37,9 @@ impl OpenCv {
     pub fn of(python: &Path) -> Result<Self, EvalError> {
         let print = ["-c", "import cv2, numpy; print(cv2.__version__)"].map(OsStr::new);
         let version = run(python, &print)?.trim().to_owned();
+        if version.is_empty() {
+            return Err(EvalError::new(python, "is no Python: it prints no version of OpenCV"));
+        }
         Ok(Self { python: python.to_owned(), version })
     }
 

@@ -17,7 +17,7 @@ pub use error::MockError;
 
 use crate::limits::IMAGE_SIDE;
 use decode::Picture;
-use image::{DynamicImage, GrayImage, Rgb, RgbImage};
+use image::{DynamicImage, GrayImage, Luma, Rgb, RgbImage};
 use std::convert::Infallible;
 use std::path::{Path, PathBuf};
 use stereopsis::camera::{
@@ -105,7 +105,7 @@ impl MockCamera {
         let (width, height) = (u32::from(self.format.width), u32::from(self.format.height));
         let grey = (self.format.pixel == PixelFormat::Grey8).then(|| self.bytes.clone());
         let image = grey.and_then(|bytes| GrayImage::from_raw(width, height, bytes));
-        image.unwrap_or_else(|| DynamicImage::from(self.picture()).into_luma8())
+        image.unwrap_or_else(|| luma(&self.picture()))
     }
 
     /// The picture with 8 bits a channel, for display: 16-bit samples lose their low significant bits.
@@ -125,6 +125,15 @@ impl MockCamera {
             }
         })
     }
+}
+
+/// A picture in grey, as [`GreyLines`](stereopsis::imaging::GreyLines) makes lines of colours grey.
+pub fn luma(picture: &RgbImage) -> GrayImage {
+    let of = |Rgb([r, g, b]): &Rgb<u8>| {
+        let [r, g, b] = [r, g, b].map(|&sample| u32::from(sample));
+        Luma([((4899 * r + 9617 * g + 1868 * b + (1 << 13)) >> 14) as u8])
+    };
+    GrayImage::from_fn(picture.width(), picture.height(), |x, y| of(picture.get_pixel(x, y)))
 }
 
 /// The significant bits of the images that have 16 bits a sample: those of the largest sample of all; `None`
@@ -177,5 +186,27 @@ impl LineSource for MockCamera {
         target.copy_from_slice(&self.bytes[usize::from(row) * needed..][..needed]);
         self.row += 1;
         Ok(LineStart { row, timestamp_us: 0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use stereopsis::imaging::GreyLines;
+
+    #[test]
+    fn a_picture_is_as_grey_as_its_lines() {
+        let picture = RgbImage::from_fn(256, 7, |x, y| {
+            let [r, g, b] = [37 * x + 11 * y, 59 * x + 83 * y, x ^ (y * 40)].map(|sample| sample as u8);
+            Rgb([r, g, b])
+        });
+        let camera = MockCamera::from_image(picture.clone().into()).expect("a camera");
+        let mut lines = GreyLines::<_, 768>::new(camera).expect("room for a line");
+        lines.start_frame().expect("a frame");
+        for row in luma(&picture).chunks_exact(256) {
+            let mut line = [0; 256];
+            lines.next_line(&mut line).expect("a line");
+            assert_eq!(row, line);
+        }
     }
 }

@@ -110,12 +110,13 @@ impl PairCheck {
         let light = exposure_warning(&lacks);
         let texture =
             if light.is_none() && fault.is_none() { texture_warning(&lacks, matches) } else { None };
-        let nothing = (fault.is_none() && light.is_none() && texture.is_none())
+        let masks = mask_warning(&lacks);
+        let nothing = (fault.is_none() && light.is_none() && texture.is_none() && masks.is_none())
             .then(|| unmatched_warning(matches))
             .flatten();
         let is_known = range.is_some() && search.is_some();
         let beyond = if is_known { beyond.warnings() } else { [None, None] };
-        let found = [fault].into_iter().chain(beyond).chain([light, texture, nothing]);
+        let found = [fault].into_iter().chain(beyond).chain([masks, light, texture, nothing]);
         check.warnings = found.flatten().collect();
         check
     }
@@ -138,6 +139,16 @@ impl PairCheck {
             out_of_view.unwrap_or_default()
         )
     }
+}
+
+/// What is to be known about a mask that leaves nothing of its image.
+fn mask_warning(lacks: &[Lacks; 2]) -> Option<String> {
+    let black = lacks.iter().position(|lacks| lacks.masked >= 1.0)?;
+    let side = ["left", "right"][black];
+    Some(format!(
+        "the mask of the {side} image is black, and nothing of that image is matched; make it 255 where the image \
+         shows something"
+    ))
 }
 
 /// What is to be known about features of both pictures of which next to none are the same.

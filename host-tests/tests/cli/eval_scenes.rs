@@ -210,4 +210,6 @@ fn opencv_is_beside() {
     fs::write(&python, "#!/bin/sh\necho 'a trace' >&2\necho 'no module cv2' >&2\nexit 1\n").expect("a file");
     let line = format!("--opencv {python}: does not run OpenCV (no module cv2); install it (pip install");
     bench.refused(&["eval", "--scenes", &scenes, "--opencv", &python], &line);
+    fs::write(&python, "#!/bin/sh\n").expect("a file");
+    bench.refused(&["eval", "--scenes", &scenes, "--opencv", &python], "is no Python: it prints no version");
 }

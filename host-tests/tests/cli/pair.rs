@@ -196,13 +196,16 @@ fn masks_take_answers_away() {
     image::GrayImage::from_pixel(width, height, image::Luma([255]))
         .save(bench.path("right.png"))
         .expect("a mask");
-    image::GrayImage::new(8, 8).save(bench.path("small.png")).expect("a mask");
+    image::GrayImage::from_pixel(8, 8, image::Luma([255])).save(bench.path("small.png")).expect("a mask");
     let path = |name: &str| bench.path(name).display().to_string();
     let with = |right: &str| {
         let masks = ["--valid-left".to_owned(), path("left.png"), "--valid-right".to_owned(), path(right)];
         args.iter().cloned().chain(masks).collect::<Vec<_>>()
     };
     bench.refused(&with("small.png"), "small.png");
+    image::GrayImage::new(width, height).save(bench.path("black.png")).expect("a mask");
+    let black = text(&stereo(with("black.png")).stderr);
+    assert!(black.contains("the mask of the right image is black") && !black.contains("features"), "{black}");
     let run = stereo(with("right.png"));
     assert!(run.status.success() && run.stderr.is_empty(), "{}", text(&run.stderr));
     let flags = image::open(bench.path("out/flags.png")).expect("flags").into_luma8();

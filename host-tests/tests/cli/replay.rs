@@ -172,6 +172,9 @@ fn what_cannot_be_played_is_named() {
     fs::write(&file, "stereopsis recording 1\n{\"width\":0,\"height\":9,\"max_row_skew_us\":0}\n")
         .expect("a file");
     replay(&file, "frames of 0 x 9");
+    fs::write(&file, "stereopsis recording 1\n{\"width\":48,\"height\":9,\"max_row_skew_us\":0}\n")
+        .expect("a file");
+    replay(&file, "a recording without a frame");
     for (option, range) in [("--most-lost", "0 to 65535"), ("--frames", "1 to 4294967295")] {
         for bad in ["-1", "x", "4294967296"] {
             bench.refused(

@@ -195,6 +195,9 @@ fn play(
     if let Some(e) = source.failed() {
         return Err(e.into());
     }
+    if names.is_empty() {
+        return Err(Failure::new(format!("{}: a recording without a frame", args.from.display())));
+    }
     let pair = check.map(|check| {
         let few = answers.few(&check);
         check.with_warning(rows.as_ref().and_then(Rows::warning)).with_warning(few)

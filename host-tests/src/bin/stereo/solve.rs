@@ -12,12 +12,13 @@ use crate::results::{self, DepthFiles};
 use crate::scale::{camera, off_middle_of, scale};
 use crate::shared::remark;
 use crate::watch::{self, OBSTACLES, Watch};
-use image::{RgbImage, imageops};
+use image::RgbImage;
 use std::fmt::Display;
 use std::path::PathBuf;
 use stereopsis::depth::DepthScale;
 use stereopsis::geometry::camera::ImageSize;
 use stereopsis_host::masked::MaskedPair;
+use stereopsis_host::mock::luma;
 use stereopsis_host::output::Staging;
 use stereopsis_host::pair::PairCheck;
 use stereopsis_host::rectify::{rectify, rectify_colours, with_rectified};
@@ -57,7 +58,7 @@ pub fn solve(
             pair.notes.push(format!("{}: is of matches alone: nothing is in metres", calib.display()));
         }
         Staging::probe(&args.out)?;
-        let [left, right] = [&pair.left, &pair.right].map(imageops::grayscale);
+        let [left, right] = [&pair.left, &pair.right].map(luma);
         let camera = scale.as_ref().and_then(|scale| camera(scale.rig()));
         let masks = args.masks.read(&args.calib, left.dimensions())?;
         let valid = masks.as_ref().map(|masks| masks.each_ref());
@@ -161,7 +162,7 @@ fn raw(args: &MatchArgs, pair: &mut Pair) -> Result<(Scene, Matched), Failure> {
     let (left, right) = rectify_colours(&rectification, &pair.left, &pair.right).map_err(|e| named(&e))?;
     let grey = rectify(&rectification, &mut pair.camera).map_err(|e| named(&e))?;
     let (valid, camera) = (grey.valid.each_ref(), rectification.camera());
-    let [raw_left, raw_right] = [&pair.left, &pair.right].map(imageops::grayscale);
+    let [raw_left, raw_right] = [&pair.left, &pair.right].map(luma);
     let looked = Looked {
         valid: Some(valid),
         camera: Some(camera),

@@ -20,6 +20,7 @@ use stereopsis::geometry::{
 use stereopsis_host::calibration;
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::matches::read_matches;
+use stereopsis_host::mock::luma;
 use stereopsis_host::output::Staging;
 
 /// How far a match may be from what the others say, px.
@@ -77,7 +78,7 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     let both = UncalibratedRectification::new(&found.fundamental, &right, size).map_err(|e| failed(&e))?;
     Staging::probe(out)?;
 
-    let grey = [&pair.left, &pair.right].map(imageops::grayscale);
+    let grey = [&pair.left, &pair.right].map(luma);
     let pictures: Vec<_> = grey.iter().zip(both.to_raw()).map(|(raw, to_raw)| warped(raw, to_raw)).collect();
     let share = |valid: &GrayImage| {
         valid.iter().filter(|&&seen| seen != 0).count() as f64

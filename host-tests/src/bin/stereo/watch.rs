@@ -3,13 +3,14 @@
 use crate::failure::Failure;
 use crate::place::{json, png};
 use clap::Args;
-use image::{RgbImage, imageops};
+use image::RgbImage;
 use std::path::Path;
 use stereopsis::depth::DepthScale;
 use stereopsis::matching::Config;
 use stereopsis::obstacles::{DriveConfig, GroundSource};
 use stereopsis::units::Disparity;
 use stereopsis_host::map::DisparityMap;
+use stereopsis_host::mock::luma;
 use stereopsis_host::obstacles::{ObstacleRecord, ObstacleWatch, Timeline, Vehicle, WatchedFrame};
 use stereopsis_host::output::{OutputError, Staging};
 
@@ -114,7 +115,7 @@ impl Watch {
         left: &RgbImage,
         right: Option<&RgbImage>,
     ) -> Result<Seen, Failure> {
-        let grey = right.map(|right| [left, right].map(imageops::grayscale));
+        let grey = right.map(|right| [left, right].map(luma));
         let pictures = grey.as_ref().map(|grey| grey.each_ref());
         let frame = WatchedFrame { scale, map, rows, largest, pictures };
         let (record, picture) =

@@ -201,6 +201,8 @@ impl FatteningWork<'_> {
 pub(in crate::matching) struct FillWork<'a> {
     pub answers: &'a mut [Disparity],
     pub flags: &'a mut [PixelFlags],
+    /// Workspace of a number for each answer.
+    pub room: &'a mut [u16],
     /// Most pixels of a gap, at least one.
     pub most: u8,
     /// Largest difference of the answers on both sides of a gap.

@@ -160,6 +160,12 @@ impl<'a> RowWorkspace<'a> {
         Lengths(self.lengths)
     }
 
+    /// Scratch row of a half-word per pixel.
+    pub(in crate::matching) fn scratch(&mut self) -> &mut [u16] {
+        self.check(Phase::Surfaces);
+        self.right
+    }
+
     /// The confidences of the row that waited, a byte a pixel.
     pub(in crate::matching) fn confidences(&mut self) -> &mut [u8] {
         self.check(Phase::Surfaces);
@@ -239,6 +245,7 @@ mod tests {
         let (lengths, sums) = workspace.for_smoothing();
         assert_eq!((lengths.half_words().len(), sums.len()), (WIDTH, 2 * (40 - 15)));
         assert_eq!(workspace.lengths().half_words(), [11, 0, 12, 0, 13, 0, 14]);
+        assert_eq!(workspace.scratch(), [7, 0, 8, 0, 9, 0, 10]);
         assert_eq!(workspace.confidences(), [0, 0, 0, 0, 1, 0, 0]);
         let (confidences, withheld) = workspace.confidences_and_withheld();
         assert_eq!((confidences.len(), &*withheld), (WIDTH, &[2, 0, 3, 0, 4, 0, 5][..]));

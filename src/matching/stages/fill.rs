@@ -28,7 +28,7 @@ pub(super) fn fill_gaps(frame: &mut Frame<'_>, newest: usize) {
         let here = waiting(newest);
         let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
         let (most, step) = (checks.fill_pixels, checks.fill_step);
-        frame.backend.fill(FillWork { answers, flags, most, step });
+        frame.backend.fill(FillWork { answers, flags, room: frame.workspace.scratch(), most, step });
     }
 }
 
@@ -46,7 +46,12 @@ fn undo(answers: &mut [Disparity], flags: &[PixelFlags]) {
         keep_loop();
         // Mostly none of them is.
         if u64::from_le_bytes(flags.map(PixelFlags::bits)) & FILLED != 0 {
-            undo_each(answers, flags);
+            for (answer, flags) in answers.iter_mut().zip(flags) {
+                keep_loop();
+                if flags.contains(PixelFlags::FILLED) {
+                    *answer = Disparity::NONE;
+                }
+            }
         }
     }
     undo_each(rest, flags_rest);
@@ -77,9 +82,11 @@ mod tests {
         let mut answers = row.map(Disparity::from_raw);
         let mut flags = row.map(|raw| PixelFlags::MISMATCH.when(raw == NONE));
         let before = flags;
+        let mut room = [0; 12];
         Backend::detect().fill(FillWork {
             answers: &mut answers,
             flags: &mut flags,
+            room: &mut room,
             most: 2,
             step: Disparity::NONE,
         });

@@ -10,7 +10,7 @@
 //! * [`left_right`]: the left-right check. [`answers`]: winners made answers.
 //! * [`mod@smooth`]: answers averaged within their surface, and its length.
 //! * [`mod@edges`], [`mod@fattening`]: answers refused that spread.
-//! * [`mod@speckle`]: support counted.
+//! * [`mod@speckle`]: support counted. [`mod@fill`]: small gaps closed.
 //! * [`rows`]: rows filled and copied.
 //!
 //! Of safe Rust over fixed lanes the compiler makes two or three instructions where one is needed: it counts
@@ -34,6 +34,7 @@ mod census;
 mod columns;
 mod edges;
 mod fattening;
+mod fill;
 mod fractions;
 mod left_right;
 mod rows;
@@ -48,8 +49,8 @@ use super::isa::{Isa, sole_kernel};
 use super::parameters::{MethodParameters, SgmParameters, WindowParameters};
 use super::portable;
 use super::work::{
-    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, Guide, MASKS, PathWork, STEP, SmoothWork,
-    SpeckleWork, WindowWork,
+    AnswerWork, CensusWork, CostWork, EdgeWork, FatteningWork, FillWork, Guide, MASKS, PathWork, STEP,
+    SmoothWork, SpeckleWork, WindowWork,
 };
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::layout::OUTSIDE;
@@ -150,6 +151,11 @@ impl Isa for Backend {
     #[inline(always)]
     fn refuse_fattening(self, work: FatteningWork<'_>) {
         fattening::refuse(work);
+    }
+
+    #[inline(always)]
+    fn fill(self, work: FillWork<'_>) {
+        fill::fill(work);
     }
 
     #[inline(always)]

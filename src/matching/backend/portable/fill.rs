@@ -24,7 +24,7 @@ pub(in crate::matching::backend) fn fill(mut work: FillWork<'_>) {
 once_without_vectors! {
     /// Closes the gap between an answer and the one before it, if it is small and they are about the same.
     pub(in crate::matching::backend) fn close(work: &mut FillWork<'_>, begin: usize, end: usize) {
-        let FillWork { answers, flags, most, step } = work;
+        let FillWork { answers, flags, most, step, .. } = work;
         let sides = (begin.checked_sub(1).and_then(|left| answers.get(left)), answers.get(end));
         let (Some(&left), Some(&right)) = sides else { return };
         if end - begin > usize::from(*most) || left.raw().abs_diff(right.raw()) > step.raw() {

@@ -134,7 +134,7 @@ pub struct CSector {
 pub struct CScan {
     /// Angle of the first range, rad: the middle of the rightmost sector.
     pub angle_min: f32,
-    /// Angle of the last range, rad: the middle of the leftmost sector.
+    /// Angle of the last range that was written, rad: the middle of the leftmost sector where all are.
     pub angle_max: f32,
     /// Angle between two ranges, rad.
     pub angle_increment: f32,

@@ -10,7 +10,7 @@ use super::sector::SectorState;
 pub struct LaserScan {
     /// Angle of the first range, rad: the middle of the rightmost sector.
     pub angle_min: f32,
-    /// Angle of the last range, rad: the middle of the leftmost sector.
+    /// Angle of the last range that was written, rad: the middle of the leftmost sector where all are.
     pub angle_max: f32,
     /// Angle between two ranges, rad.
     pub angle_increment: f32,
@@ -43,15 +43,15 @@ impl ObstaclesView<'_> {
             };
         }
         let [first, last] = setup.ends_mrad.map(|end| f32::from(end) / 1000.0);
-        let increment = (last - first) / sectors.max(1) as f32;
+        let (increment, count) = ((last - first) / sectors.max(1) as f32, ranges.len().min(sectors));
         let nearest_mm = setup.depth_mm(i32::from(setup.largest.raw()) + setup.offset_steps);
         LaserScan {
             angle_min: -(last - increment / 2.0),
-            angle_max: -(first + increment / 2.0),
+            angle_max: -(first + increment / 2.0) - increment * (sectors - count) as f32,
             angle_increment: increment,
             range_min: f32::from(nearest_mm) / 1000.0,
             range_max: f32::from(free_mm) / 1000.0,
-            count: ranges.len().min(sectors),
+            count,
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::matching::{
 #[doc = "```"]
 #[doc = "use stereopsis::{matching::{Block, Config}, pipeline::Pipeline};"]
 #[doc = "static PIPELINE: Pipeline<Block, 320, 64> = Pipeline::new();"]
-#[doc = "assert!(size_of_val(&PIPELINE) < 46_000);"]
+#[doc = "assert!(size_of_val(&PIPELINE) < 48_000);"]
 #[doc = "assert_eq!(Pipeline::<Block, 320, 64>::LATENCY, 10);"]
 #[doc = "```"]
 pub struct Pipeline<S: Method, const W: usize, const D: usize> {

@@ -1,7 +1,7 @@
 //! How right answers are, in the measures of the public benchmarks.
 
 use super::Truth;
-use crate::real::Score;
+use crate::real::{self, Score};
 use crate::sparsification::{Judged, Sparsification};
 use serde::Serialize;
 
@@ -78,9 +78,10 @@ impl Measures {
     }
 
     /// The mean of several scenes, which count alike; that of the confidence where every scene has one, that
-    /// of occluded pixels of the scenes that have some.
+    /// of occluded pixels of the scenes that have some, and those of errors of the scenes that have answers.
     pub fn mean(of: &[Self]) -> Self {
-        let mean = |part: fn(&Self) -> f64| (of.iter().map(part).sum::<f64>() + 0.0) / of.len().max(1) as f64;
+        let answered = || of.iter().filter(|m| m.score.has_answers());
+        let mean = |part: fn(&Self) -> f64| real::mean(answered().map(part));
         let occluded: Vec<_> = of.iter().filter_map(|m| m.occluded).collect();
         let sure: Option<Vec<f64>> = of.iter().map(|m| m.confidence_from_oracle).collect();
         Self {

@@ -149,7 +149,9 @@ pub fn fault(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<PairFau
         return Some(PairFault::BothOnTheirSides);
     }
     if matches.are_rows_apart() {
-        return Some(PairFault::RowsApart);
+        // What the rows are is said once the cameras are exchanged.
+        let is_swapped = matches.are_negative_in_moved_rows();
+        return Some(if is_swapped { PairFault::Swapped } else { PairFault::RowsApart });
     }
     // Pictures with texture that have nothing in common; without any, nothing is said. A pattern that repeats
     // has no matches that are sure, and answers everywhere.

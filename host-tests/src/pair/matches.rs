@@ -91,7 +91,8 @@ impl PairMatches {
     /// Whether most matches in rows are in front of the cameras, where what is at infinity has a disparity of
     /// less than 0 by so much.
     pub fn are_in_front(&self, offset_px: f64) -> bool {
-        let found = self.disparities_px();
+        let in_rows = self.disparities_px();
+        let found = if in_rows.len() < FEWEST { self.in_moved_rows().0 } else { in_rows };
         2 * found.iter().filter(|&&d| d + offset_px > 0.0).count() > found.len()
     }
 
@@ -137,24 +138,31 @@ impl PairMatches {
         ]
     }
 
-    /// How many matches are in rows when one of the pictures is moved up or down, and by how much, px: within
-    /// an eighth of a low picture, as a quarter of those of chance are.
-    fn in_moved_rows(&self) -> (usize, f64) {
+    /// The disparities of the matches in rows when one of the pictures is moved up or down, and by how much
+    /// it is, px: within an eighth of a low picture, as a quarter of those of chance are.
+    fn in_moved_rows(&self) -> (Vec<f64>, f64) {
         let lower = |s: &Correspondence<f64>| s.second.y - s.first.y;
         let Middle { median, .. } = middle(self.all.iter().map(lower).collect());
         let apart = ROWS_APART.min(f64::from(self.size.1) / 8.0);
-        (self.all.iter().filter(|s| (lower(s) - median).abs() < apart).count(), median)
+        let moved = self.all.iter().filter(|s| (lower(s) - median).abs() < apart);
+        (moved.map(|s| s.first.x - s.second.x).collect(), median)
     }
 
     /// How many matches are in rows as they are, or when one of the pictures is moved up or down.
     pub(super) fn most_in_rows(&self) -> usize {
-        self.in_rows.len().max(self.in_moved_rows().0)
+        self.in_rows.len().max(self.in_moved_rows().0.len())
     }
 
     /// Whether most matches are in rows when one of the pictures is moved up or down by a good deal.
     pub(super) fn are_rows_apart(&self) -> bool {
-        let (count, median) = self.in_moved_rows();
-        median.abs() >= ROWS_APART && count >= FEWEST && 2 * count > self.all.len()
+        let (moved, median) = self.in_moved_rows();
+        median.abs() >= ROWS_APART && moved.len() >= FEWEST && 2 * moved.len() > self.all.len()
+    }
+
+    /// Whether over 85 % of the matches that move have negative disparities when one of the pictures is moved
+    /// up or down.
+    pub(super) fn are_negative_in_moved_rows(&self) -> bool {
+        are_negative(&self.in_moved_rows().0)
     }
 
     /// The disparities of the matches in rows that agree with each other, in ascending order, px.
@@ -169,9 +177,7 @@ impl PairMatches {
 
     /// Whether over 85 % of the matches that move have negative disparities.
     pub(super) fn are_negative(&self) -> bool {
-        let moved: Vec<_> = self.disparities_px().into_iter().filter(|d| d.abs() > STILL).collect();
-        let negative = moved.iter().filter(|&&d| d < 0.0).count();
-        moved.len() >= FEWEST && 20 * negative > 17 * moved.len()
+        are_negative(&self.disparities_px())
     }
 
     /// The disparities of the matches in rows, in ascending order, px.
@@ -180,6 +186,13 @@ impl PairMatches {
         found.sort_by(f64::total_cmp);
         found
     }
+}
+
+/// Whether over 85 % of the disparities that are no noise are negative.
+fn are_negative(disparities_px: &[f64]) -> bool {
+    let moved: Vec<_> = disparities_px.iter().filter(|d| d.abs() > STILL).collect();
+    let negative = moved.iter().filter(|&&&d| d < 0.0).count();
+    moved.len() >= FEWEST && 20 * negative > 17 * moved.len()
 }
 
 /// The middle of some numbers, and from their lowest fifth to their highest one.

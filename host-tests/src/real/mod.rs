@@ -12,7 +12,7 @@ mod altered;
 mod score;
 
 pub use altered::Alteration;
-pub use score::Score;
+pub use score::{Score, mean};
 
 use crate::limits;
 use crate::mock::{MockCamera, MockError};

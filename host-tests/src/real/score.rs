@@ -33,12 +33,26 @@ impl Score {
         (scored > 0).then(|| Self { density, bad2, missed: share(scored - good, scored) })
     }
 
-    /// The mean of several scenes, which count alike; all zero of none.
+    /// The mean of several scenes, which count alike; all zero of none. That of the share of wrong answers is
+    /// of the scenes that have answers.
     pub fn mean(of: &[Self]) -> Self {
-        // The sum of nothing is minus zero.
-        let mean = |part: fn(&Self) -> f64| (of.iter().map(part).sum::<f64>() + 0.0) / of.len().max(1) as f64;
-        Self { density: mean(|s| s.density), bad2: mean(|s| s.bad2), missed: mean(|s| s.missed) }
+        Self {
+            density: mean(of.iter().map(|s| s.density)),
+            bad2: mean(of.iter().filter(|s| s.has_answers()).map(|s| s.bad2)),
+            missed: mean(of.iter().map(|s| s.missed)),
+        }
     }
+
+    /// Whether a scored pixel has an answer.
+    pub fn has_answers(&self) -> bool {
+        self.density > 0.0
+    }
+}
+
+/// The mean of some numbers; zero of none.
+pub fn mean(of: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = of.fold((0.0, 0), |(sum, count), number| (sum + number, count + 1));
+    sum / f64::from(count.max(1))
 }
 
 #[cfg(test)]
@@ -59,6 +73,9 @@ mod tests {
         let scores =
             [Score { density: 1.0, bad2: 0.2, missed: 0.2 }, Score { density: 0.5, bad2: 0.0, missed: 0.5 }];
         assert_eq!(Score::mean(&scores), Score { density: 0.75, bad2: 0.1, missed: 0.35 });
+        let none = Score { density: 0.0, bad2: 0.0, missed: 1.0 };
+        let mean = Score::mean(&[scores[0], none]);
+        assert_eq!(mean, Score { density: 0.5, bad2: 0.2, missed: 0.6 }, "what is not answered is not right");
         assert_eq!(Score::mean(&[]), Score::default());
     }
 }

@@ -24,7 +24,9 @@ impl Report<'_> {
         for (flag, name) in PixelFlags::NAMES {
             add(&format!("Pixels with the flag '{name}'"), self.map.flagged(flag).to_string());
         }
-        let measured = s.noise_sigma.map_or("as told".into(), |sigma| format!("{sigma:.1} grey levels"));
+        let measured = s
+            .noise_sigma
+            .map_or("told, or not to be measured".into(), |sigma| format!("{sigma:.1} grey levels"));
         add("Noise", format!("{}, {measured}", s.noise));
         let balanced =
             s.balance.map(|Exposure { gain, offset }| format!("x {gain:.2} {offset:+.1} grey levels"));

@@ -29,6 +29,7 @@ mod partners;
 mod plan;
 mod program;
 mod rectify;
+mod rectify_matches;
 mod rectify_refused;
 mod refused;
 mod replay;

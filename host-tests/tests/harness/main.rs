@@ -12,6 +12,7 @@ mod mock_camera;
 mod orientation;
 mod output;
 mod pair;
+mod pair_moved;
 mod raw_calibration;
 mod scene;
 mod sequences;

@@ -6,7 +6,7 @@ use stereopsis_host::run::MethodName;
 use stereopsis_host::scene::{HardScene, Random, Scene};
 
 /// What is found of two pictures and a search.
-fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
+pub fn check(left: &GrayImage, right: &GrayImage, disparities: u16) -> PairCheck {
     let matches = PairMatches::find([left, right], None).expect("features");
     let config = MethodName::Block.config(left.width() as u16, left.height() as u16, disparities);
     PairCheck::new([left, right], None, &matches, fault([left, right], &matches), &config)

@@ -55,6 +55,9 @@ fn a_box_has_its_distance_bearing_and_height() {
         assert_eq!(range.is_infinite(), !(6..10).contains(&i), "range {i}");
     }
     assert!((ranges[7] - 1.0).abs() < 0.02, "{ranges:?}");
+    let part = view.laser_scan(&mut ranges[..3]);
+    assert_eq!((part.count, part.angle_min), (3, scan.angle_min));
+    assert!((part.angle_max - scan.angle_min - 2.0 * scan.angle_increment).abs() < 1e-5, "{part:?}");
     let seen = sectors.iter().filter(|s| s.state == SectorState::Free).map(|s| s.seen_mm).min();
     assert_eq!(scan.range_max, f32::from(seen.expect("free sectors")) / 1000.0);
     assert!((2.0..8.0).contains(&scan.range_max), "{scan:?}");

@@ -193,7 +193,12 @@ fn compared(
     let sure = sure.map(|path| confidence(path, &truth.scored)).transpose()?;
     // A truth has scored pixels, else it is refused.
     let measures = Measures::of(&answers.values, truth, sure.as_deref()).unwrap_or_default();
-    if measures.score.density > 0.0 && measures.score.bad2 > MOST_WRONG {
+    if !measures.score.has_answers() {
+        remark(&format!(
+            "warning: {}: no scored pixel has an answer; the means of errors leave the scene out",
+            found.display()
+        ));
+    } else if measures.score.bad2 > MOST_WRONG {
         remark(&format!(
             "warning: {}: {:.0} % of the answers are over 2 px off: are both files in px? --depths-by is for \
              results in metres, --truth-depths for a truth in metres, --found-scale and --truth-scale for \

@@ -123,7 +123,7 @@ pub fn figures(summary: &Summary) -> String {
     let _ = writeln!(text, "density      {:.1} % of the pixels", 100.0 * s.density);
     let _ = match s.noise_sigma {
         Some(sigma) => writeln!(text, "noise        {}, {sigma:.1} grey levels", s.noise),
-        None => writeln!(text, "noise        {}, as told", s.noise),
+        None => writeln!(text, "noise        {}, told, or not to be measured", s.noise),
     };
     if let Some(pair) = &s.pair {
         let _ = writeln!(text, "images       {}", pair.lacks());

@@ -28,6 +28,13 @@ const THRESHOLD_PX: f64 = 1.0;
 /// Fewer right matches than this say too little.
 const FEWEST: usize = 16;
 
+/// A disparity that is none for sure, px.
+const STILL_PX: f64 = 1.5;
+/// The share of a rectified image that is seen of the raw one, at least, where nothing is said.
+const LEAST_SEEN: f64 = 0.6;
+/// How many other matches each one is compared with at most.
+const MOST_OTHERS: usize = 4000;
+
 /// What `rectified.json` holds. Names are a contract with programs that read it.
 #[derive(Serialize)]
 struct Summary {
@@ -75,7 +82,10 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
             seen.len()
         )));
     }
-    let both = UncalibratedRectification::new(&found.fundamental, &right, size).map_err(|e| failed(&e))?;
+    let rectify = |seen: &[_]| UncalibratedRectification::new(&found.fundamental, seen, size);
+    let rough = rectify(&right).map_err(|e| failed(&e))?;
+    let right = of_surfaces(&rough, right, size);
+    let both = rectify(&right).map_err(|e| failed(&e))?;
     Staging::probe(out)?;
 
     let grey = [&pair.left, &pair.right].map(luma);
@@ -110,6 +120,21 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     for note in &pair.notes {
         remark(&format!("note: {note}"));
     }
+    if are_negative(&right) {
+        remark(
+            "warning: nearly everything lies farther to the right in the right image: unless the cameras are turned \
+             towards each other they are swapped, and what is near is matched as far; exchange left and right",
+        );
+    }
+    if let Some((side, share)) =
+        ["left", "right"].into_iter().zip(summary.seen).find(|&(_, seen)| seen < LEAST_SEEN)
+    {
+        remark(&format!(
+            "warning: the rectified {side} image shows {:.0} % of the raw one: its matches are wrong, or the cameras \
+             stand far from side by side",
+            100.0 * share
+        ));
+    }
     let mut text = String::new();
     let _ = writeln!(
         text,
@@ -129,6 +154,39 @@ pub fn is_uncalibrated(path: &Path) -> bool {
     let text = calibration::bytes(path).unwrap_or_default();
     serde_json::from_slice::<Value>(&text)
         .is_ok_and(|found| found["calibration"].is_null() && found["homographies"].is_array())
+}
+
+/// The matches that others around them agree with in disparity. What is wrong and on its line by chance moves
+/// the columns of all others.
+fn of_surfaces(
+    both: &UncalibratedRectification<f64>,
+    seen: Vec<Correspondence<f64>>,
+    size: ImageSize,
+) -> Vec<Correspondence<f64>> {
+    let (around, apart) = (f64::from(size.width) / 8.0, (f64::from(size.width) / 64.0).max(4.0));
+    let disparity = |s: &Correspondence<f64>| Some(both.first(&s.first)?.x - both.second(&s.second)?.x);
+    let places: Vec<_> = seen.iter().filter_map(|s| Some((s.first, disparity(s)?))).collect();
+    let others = || places.iter().step_by(places.len().div_ceil(MOST_OTHERS).max(1));
+    let is_agreed = |s: &&Correspondence<f64>| {
+        let Some(d) = disparity(s) else { return false };
+        let near = others().filter(|(place, _)| (place - s.first).amax() <= around);
+        let [mut beside, mut agreeing] = [0; 2];
+        for (_, other) in near {
+            beside += 1;
+            agreeing += u32::from((other - d).abs() <= apart);
+        }
+        // The match is one of both.
+        agreeing > 1 && 4 * agreeing >= beside
+    };
+    let agreed: Vec<_> = seen.iter().filter(is_agreed).copied().collect();
+    if agreed.len() < FEWEST { seen } else { agreed }
+}
+
+/// Whether over 85 % of the matches that move lie farther to the right in the right image.
+fn are_negative(seen: &[Correspondence<f64>]) -> bool {
+    let moved = seen.iter().map(|s| s.first.x - s.second.x).filter(|d| d.abs() > STILL_PX);
+    let (negative, all) = moved.fold((0, 0), |(negative, all), d| (negative + u32::from(d < 0.0), all + 1));
+    all >= FEWEST as u32 && 20 * negative > 17 * all
 }
 
 /// How far rows of matches are apart, the root mean square, and their least and largest disparity; px.

@@ -120,6 +120,14 @@ impl Found {
         self.poses.iter().map(|pose| pose.ok().map(|pose| back.then(&pose))).collect()
     }
 
+    /// By how much the middle one of the points moves in a camera that goes so far from the first view, px.
+    /// `None` of no points.
+    pub fn parallax_px(&self, camera: &Camera<f64>, metres: f64) -> Option<f64> {
+        let mut away: Vec<_> = self.known().iter().map(|(_, point)| point.coords.norm()).collect();
+        away.sort_by(f64::total_cmp);
+        away.get(away.len() / 2).map(|middle| camera.focal_px().0 * metres / middle)
+    }
+
     /// The points that are known, with their numbers, in the same frame.
     pub fn known(&self) -> Vec<(u32, Point3<f64>)> {
         let first = self.poses.iter().find_map(|pose| pose.ok()).unwrap_or_else(Pose::identity);

@@ -21,7 +21,7 @@ const BESIDE: usize = 2;
 /// Most columns of a rim.
 const WIDEST: usize = 32;
 /// Columns without answers that count as far ones in an open place.
-const EMPTY: i32 = 8;
+const EMPTY: u32 = 8;
 /// Columns at the end of an open place in which the edge may be that it ends at: its last block, and the one
 /// beside it.
 const END: usize = 2 * open::BLOCK;
@@ -85,7 +85,7 @@ impl Row<'_> {
     #[inline(always)]
     fn refuse_all(&self) {
         if KEEPS_LOOPS {
-            self.refuse(0..self.answers.len(), RIGHT, i32::MAX, FIRST);
+            self.refuse(0..self.answers.len(), RIGHT, u32::MAX, FIRST);
             return;
         }
         let mut nearest = FIRST;
@@ -95,7 +95,7 @@ impl Row<'_> {
                 let mut answers = part(self.answers, columns).iter().rev().map(Cell::get);
                 answers.find(|answer| answer.is_some()).map_or(nearest, nearest_behind)
             } else {
-                self.refuse(columns, RIGHT, i32::MAX, nearest)
+                self.refuse(columns, RIGHT, u32::MAX, nearest)
             };
         }
     }
@@ -122,13 +122,11 @@ impl Row<'_> {
     /// without answers are far ones. The first answer begins a surface if it is nearer than `nearest`; what
     /// the next one behind these columns is compared with is returned.
     #[inline(never)]
-    fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: i32, mut nearest: i32) -> i32 {
+    fn refuse(&self, columns: Range<usize>, way: usize, far_when_empty: u32, mut nearest: i32) -> i32 {
         let first = columns.start;
         let answers = part(self.answers, columns);
         let mut x = if way == RIGHT { 0 } else { answers.len().wrapping_add(LEFT) };
-        // How many more columns may be empty.
-        let most = far_when_empty - 1;
-        let mut left = most;
+        let mut empty = 0;
         while let Some(answer) = answers.get(x) {
             keep_loop();
             let here = answer.get();
@@ -136,10 +134,10 @@ impl Row<'_> {
                 if i32::from(here.raw()) > nearest && !self.has_edge(first + x) {
                     self.refuse_rim(first + x, way);
                 }
-                (nearest, left) = (nearest_behind(here), most);
+                (nearest, empty) = (nearest_behind(here), 0);
             } else {
-                left -= 1;
-                nearest |= left >> 31;
+                empty += 1;
+                nearest = if empty == far_when_empty { -1 } else { nearest };
             }
             x = x.wrapping_add(way);
         }

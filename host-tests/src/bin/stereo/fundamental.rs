@@ -144,8 +144,8 @@ const DOUBTFUL: f64 = -2.0;
 pub fn warn_of_chance(log10: f64, kept: usize, matches: usize, args: &RobustArgs) {
     if log10 > DOUBTFUL && args.method == TwoViewMethod::Ransac {
         remark(&format!(
-            "warning: {kept} of {matches} matches agree, which up to {:.0} in 100 sets of unrelated ones do by \
-             chance; see whether these images are of one scene",
+            "warning: {kept} of {matches} matches agree, which up to {:.0} in 100 sets of unrelated ones do \
+             by chance; see whether these images are of one scene",
             100.0 * 10f64.powf(log10)
         ));
     }

@@ -94,6 +94,9 @@ struct ViewAnswer {
     translation: Option<[f64; 3]>,
 }
 
+/// Views whose distance tells lengths differ by so much in what they see, px.
+const APART_PX: f64 = 2.0;
+
 struct Images {
     names: Vec<String>,
     grey: Vec<GrayImage>,
@@ -121,6 +124,11 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
             format!("the distance of {} and {}, which is not known", name(a), name(b))
         }
     };
+    let apart_px = args.baseline.and_then(|metres| found.parallax_px(&camera, metres));
+    if apart_px.is_some_and(|px| px < APART_PX) {
+        let why = "stand in one place, which tells no length; begin with two that stand apart";
+        return Err(Failure::new(format!("--baseline: {} and {} {why}", images.names[0], images.names[1])));
+    }
     let answer = answer(&found, &images, &unit);
     let standing: Vec<_> = beside.iter().flatten().copied().collect();
     staging.write("structure.json", |out| json(out, &answer))?;

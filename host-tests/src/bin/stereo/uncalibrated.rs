@@ -122,16 +122,17 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     }
     if are_negative(&right) {
         remark(
-            "warning: nearly everything lies farther to the right in the right image: unless the cameras are turned \
-             towards each other they are swapped, and what is near is matched as far; exchange left and right",
+            "warning: nearly everything lies farther to the right in the right image: unless the cameras \
+             are turned towards each other they are swapped, and what is near is matched as far; exchange \
+             left and right",
         );
     }
     if let Some((side, share)) =
         ["left", "right"].into_iter().zip(summary.seen).find(|&(_, seen)| seen < LEAST_SEEN)
     {
         remark(&format!(
-            "warning: the rectified {side} image shows {:.0} % of the raw one: its matches are wrong, or the cameras \
-             stand far from side by side",
+            "warning: the rectified {side} image shows {:.0} % of the raw one: its matches are wrong, or the \
+             cameras stand far from side by side",
             100.0 * share
         ));
     }

@@ -241,6 +241,11 @@ fn views_of_a_street_stand_where_they_stood() {
         &["structure", "--images", &one, &again, "--calib", &calib, "--out", &other],
         "has not moved",
     );
+    // The first camera's place twice tells no length.
+    let [second, third, last] = [1, 2, 3].map(|number| format!("{street}/left/00000{number}.png"));
+    let twice = [&one, &again, &second, &third, &last].map(String::as_str);
+    let known = ["--calib", &calib, "--baseline", "1", "--out", &other];
+    bench.refused(&[&["structure", "--images"][..], &twice, &known].concat(), "stand in one place");
     assert!(!bench.path("other").exists());
 }
 

@@ -116,8 +116,8 @@ impl<L: LineSource, R: LineSource> CameraPair<L, R> {
     /// Frames that one camera may be behind before the pair gives up.
     pub const MAX_CATCH_UP: u32 = 4;
 
-    /// Joins two cameras that may be `max_row_skew_us` apart in reading out a row, by the time stamps of their
-    /// lines: both cameras have a clock, or neither has and all time stamps are 0.
+    /// Joins two cameras that may be `max_row_skew_us` apart in reading out a row, by the time stamps of
+    /// their lines: both cameras have a clock, or neither has and all time stamps are 0.
     pub fn new(left: L, right: R, max_row_skew_us: u32) -> Paired<Self, L, R> {
         let (l, r) = (left.format(), right.format());
         if l != r {

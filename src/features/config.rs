@@ -38,8 +38,8 @@ pub struct FeatureConfig {
 }
 
 impl FeatureConfig {
-    /// Corners keep so far from the picture's edge, px: the patch and its smoothing. A feature's place between
-    /// pixels may be up to 1.75 px nearer to it.
+    /// Corners keep so far from the picture's edge, px: the patch and its smoothing. A feature's place
+    /// between pixels may be up to 1.75 px nearer to it.
     pub const MARGIN: u16 = 17;
     /// The least side of a cell, px: at most two rows of cells have corners that wait for their patch.
     pub const LEAST_CELL: u16 = 16;

@@ -1828,7 +1828,7 @@ typedef struct stereopsis_scan {
    */
   float angle_min;
   /**
-   * Angle of the last range, rad: the middle of the leftmost sector.
+   * Angle of the last range that was written, rad: the middle of the leftmost sector where all are.
    */
   float angle_max;
   /**

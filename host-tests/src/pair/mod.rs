@@ -146,8 +146,8 @@ fn mask_warning(lacks: &[Lacks; 2]) -> Option<String> {
     let black = lacks.iter().position(|lacks| lacks.masked >= 1.0)?;
     let side = ["left", "right"][black];
     Some(format!(
-        "the mask of the {side} image is black, and nothing of that image is matched; make it 255 where the image \
-         shows something"
+        "the mask of the {side} image is black, and nothing of that image is matched; make it 255 where \
+         the image shows something"
     ))
 }
 

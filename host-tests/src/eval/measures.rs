@@ -155,10 +155,19 @@ mod tests {
 
     #[test]
     fn scenes_count_alike() {
-        let one =
-            Measures { scored: 1, epe_px: 1.0, confidence_from_oracle: Some(0.5), ..Measures::default() };
-        let two = Measures { scored: 9, epe_px: 2.0, ..Measures::default() };
+        let score = Score { density: 0.5, bad2: 0.1, missed: 0.55 };
+        let one = Measures {
+            scored: 1,
+            score,
+            epe_px: 1.0,
+            confidence_from_oracle: Some(0.5),
+            ..Measures::default()
+        };
+        let two = Measures { scored: 9, score, epe_px: 2.0, ..Measures::default() };
         let mean = Measures::mean(&[one, two]);
         assert_eq!((mean.scored, mean.epe_px, mean.confidence_from_oracle), (10, 1.5, None));
+        // What is not answered has no error.
+        let mean = Measures::mean(&[one, two, Measures { scored: 5, ..Measures::default() }]);
+        assert_eq!((mean.scored, mean.epe_px), (15, 1.5));
     }
 }

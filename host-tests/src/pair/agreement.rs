@@ -50,6 +50,27 @@ pub(super) fn of_things(matches: &[Correspondence<f64>], width: u32) -> Vec<f64>
     found
 }
 
+/// How many other matches each one is compared with at most.
+const MOST_OTHERS: usize = 4000;
+
+/// Whether at least a quarter of the matches around each one, within an eighth of the width of the rectified
+/// pictures, agree with it in disparity, and one of them does.
+pub fn agree_around(matches: &[Correspondence<f64>], width: u32) -> Vec<bool> {
+    let disparity = |s: &Correspondence<f64>| s.first.x - s.second.x;
+    let others = || matches.iter().step_by(matches.len().div_ceil(MOST_OTHERS).max(1));
+    let agrees = |s: &Correspondence<f64>| {
+        let beside = others().filter(|other| (other.first - s.first).amax() <= f64::from(width) / 8.0);
+        let (mut all, mut agreeing) = (0, 0);
+        for other in beside {
+            all += 1;
+            agreeing += u32::from((disparity(other) - disparity(s)).abs() <= reach(width));
+        }
+        // The match is one of both.
+        agreeing > 1 && 4 * agreeing >= all
+    };
+    matches.iter().map(agrees).collect()
+}
+
 /// How rows of matches lie, by the small turn of the right camera that explains most of them.
 #[derive(Clone, Copy, Debug)]
 pub struct RowFit {

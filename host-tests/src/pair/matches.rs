@@ -188,8 +188,8 @@ impl PairMatches {
     }
 }
 
-/// Whether over 85 % of the disparities that are no noise are negative.
-fn are_negative(disparities_px: &[f64]) -> bool {
+/// Whether over 85 % of the disparities that are no noise, of enough of them, are negative.
+pub fn are_negative(disparities_px: &[f64]) -> bool {
     let moved: Vec<_> = disparities_px.iter().filter(|d| d.abs() > STILL).collect();
     let negative = moved.iter().filter(|&&&d| d < 0.0).count();
     moved.len() >= FEWEST && 20 * negative > 17 * moved.len()

@@ -10,9 +10,9 @@ mod lacks;
 mod matches;
 mod search;
 
-pub use agreement::RowFit;
+pub use agreement::{RowFit, agree_around};
 pub use fault::{PairFault, fault, is_blank};
-pub use matches::PairMatches;
+pub use matches::{PairMatches, are_negative};
 pub use search::search;
 
 use agreement::FEWEST;

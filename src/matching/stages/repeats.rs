@@ -244,7 +244,7 @@ pub(super) fn empty_filled<S: Method>(frame: &mut Frame<'_>, newest: usize) {
         let (answers, flags) = (frame.finished.row_mut(here), frame.flags.row_mut(here));
         for_columns(part(frame.blocks, words(frame.width)..), frame.width, &mut |places| {
             let flags = part_mut(flags, places.clone());
-            // On a large pattern nothing was filled.
+            // On a large pattern nothing was filled; what does not stand at words is looked at by the pixel.
             let words = view::<PixelFlags, u32>(flags);
             let mut all = if size_of_val(words) == places.len() { 0 } else { FILLED };
             for word in words {

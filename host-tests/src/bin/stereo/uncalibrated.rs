@@ -22,18 +22,15 @@ use stereopsis_host::command_line::one_line;
 use stereopsis_host::matches::read_matches;
 use stereopsis_host::mock::luma;
 use stereopsis_host::output::Staging;
+use stereopsis_host::pair::{agree_around, are_negative};
 
 /// How far a match may be from what the others say, px.
 const THRESHOLD_PX: f64 = 1.0;
 /// Fewer right matches than this say too little.
 const FEWEST: usize = 16;
 
-/// A disparity that is none for sure, px.
-const STILL_PX: f64 = 1.5;
 /// The share of a rectified image that is seen of the raw one, at least, where nothing is said.
 const LEAST_SEEN: f64 = 0.6;
-/// How many other matches each one is compared with at most.
-const MOST_OTHERS: usize = 4000;
 
 /// What `rectified.json` holds. Names are a contract with programs that read it.
 #[derive(Serialize)]
@@ -84,7 +81,7 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     }
     let rectify = |seen: &[_]| UncalibratedRectification::new(&found.fundamental, seen, size);
     let rough = rectify(&right).map_err(|e| failed(&e))?;
-    let right = of_surfaces(&rough, right, size);
+    let right = of_surfaces(&rough, right, size.width);
     let both = rectify(&right).map_err(|e| failed(&e))?;
     Staging::probe(out)?;
 
@@ -120,7 +117,8 @@ pub fn run(pair: &Pair, matches: &Path, out: &Path) -> Result<(), Failure> {
     for note in &pair.notes {
         remark(&format!("note: {note}"));
     }
-    if are_negative(&right) {
+    let raw_px: Vec<_> = right.iter().map(|s| s.first.x - s.second.x).collect();
+    if are_negative(&raw_px) {
         remark(
             "warning: nearly everything lies farther to the right in the right image: unless the cameras \
              are turned towards each other they are swapped, and what is near is matched as far; exchange \
@@ -157,37 +155,22 @@ pub fn is_uncalibrated(path: &Path) -> bool {
         .is_ok_and(|found| found["calibration"].is_null() && found["homographies"].is_array())
 }
 
-/// The matches that others around them agree with in disparity. What is wrong and on its line by chance moves
-/// the columns of all others.
+/// The matches that others around them agree with in disparity; all of them where these are too few. What is
+/// wrong and on its line by chance moves the columns of all others.
 fn of_surfaces(
     both: &UncalibratedRectification<f64>,
     seen: Vec<Correspondence<f64>>,
-    size: ImageSize,
+    width: u16,
 ) -> Vec<Correspondence<f64>> {
-    let (around, apart) = (f64::from(size.width) / 8.0, (f64::from(size.width) / 64.0).max(4.0));
-    let disparity = |s: &Correspondence<f64>| Some(both.first(&s.first)?.x - both.second(&s.second)?.x);
-    let places: Vec<_> = seen.iter().filter_map(|s| Some((s.first, disparity(s)?))).collect();
-    let others = || places.iter().step_by(places.len().div_ceil(MOST_OTHERS).max(1));
-    let is_agreed = |s: &&Correspondence<f64>| {
-        let Some(d) = disparity(s) else { return false };
-        let near = others().filter(|(place, _)| (place - s.first).amax() <= around);
-        let [mut beside, mut agreeing] = [0; 2];
-        for (_, other) in near {
-            beside += 1;
-            agreeing += u32::from((other - d).abs() <= apart);
-        }
-        // The match is one of both.
-        agreeing > 1 && 4 * agreeing >= beside
+    let rectified = |s: &Correspondence<f64>| {
+        let (first, second) = (both.first(&s.first)?, both.second(&s.second)?);
+        Some((*s, Correspondence { first, second }))
     };
-    let agreed: Vec<_> = seen.iter().filter(is_agreed).copied().collect();
+    let (raw, rectified): (Vec<_>, Vec<_>) = seen.iter().filter_map(rectified).unzip();
+    let agreeing = agree_around(&rectified, width.into());
+    let agreed: Vec<_> =
+        raw.into_iter().zip(agreeing).filter_map(|(s, agrees)| agrees.then_some(s)).collect();
     if agreed.len() < FEWEST { seen } else { agreed }
-}
-
-/// Whether over 85 % of the matches that move lie farther to the right in the right image.
-fn are_negative(seen: &[Correspondence<f64>]) -> bool {
-    let moved = seen.iter().map(|s| s.first.x - s.second.x).filter(|d| d.abs() > STILL_PX);
-    let (negative, all) = moved.fold((0, 0), |(negative, all), d| (negative + u32::from(d < 0.0), all + 1));
-    all >= FEWEST as u32 && 20 * negative > 17 * all
 }
 
 /// How far rows of matches are apart, the root mean square, and their least and largest disparity; px.

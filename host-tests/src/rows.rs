@@ -9,7 +9,7 @@ use stereopsis::geometry::{
 };
 
 /// How far rows may be off before answers are lost, px.
-const BORNE_PX: f64 = 0.25;
+pub const BORNE_PX: f64 = 0.25;
 /// Standard deviations below its mean that a normal variable stays above with a probability of 95 %.
 const ONE_SIDED_95: f64 = 1.645;
 
@@ -46,6 +46,9 @@ pub struct Rows {
     pub scale: f64,
     /// `good`: under 0.25 px; `worn`: up to 0.5 px, answers are lost; `bad`: more.
     pub health: &'static str,
+    /// The turn of the right camera.
+    #[serde(skip)]
+    pub alignment: RowAlignment<f64>,
     /// What the yaw does to rows, and its standard deviation, px.
     #[serde(skip)]
     by_yaw_px: [f64; 2],
@@ -102,6 +105,7 @@ impl Rows {
             matches,
             agreeing: fit.agreeing,
             scale: fit.scale,
+            alignment: *found,
             is_agreed: fit.is_agreed(),
             health: match found.health(camera, size) {
                 RowHealth::Good => "good",

@@ -33,7 +33,7 @@ impl Content for Odometry {
 }
 
 /// Bytes of an odometry beside its points, on any target.
-const FIXED_BYTES: usize = 432;
+const FIXED_BYTES: usize = 504;
 /// Bytes of a point, on any target.
 const POINT_BYTES: usize = size_of::<Track<f32>>()
     + size_of::<PointMatch<f32>>()

@@ -108,7 +108,7 @@
 /**
  * Bytes that are enough for an odometry that follows up to `points` points, on any target.
  */
-#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)432 + (size_t)453 * (points))
+#define STEREOPSIS_ODOMETRY_BYTES(points) ((size_t)504 + (size_t)457 * (points))
 
 /**
  * Bytes that are enough for a finder of obstacles, on any target, in frames of up to `columns`

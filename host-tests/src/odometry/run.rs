@@ -9,10 +9,11 @@ use crate::correspond::CorrespondError;
 use image::GrayImage;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::ScopedJoinHandle;
+use stereopsis::geometry::rectify::RowAlignment;
 use stereopsis::imaging::{Picture, PictureError};
 use stereopsis::motion::odometry::{
-    Frame, MonocularOdometry, ObservedPoint, OdometryConfig, OdometryError, OdometryRigError, RigEstimate,
-    Step, StereoOdometry,
+    Frame, MonocularOdometry, ObservedPoint, OdometryConfig, OdometryError, OdometryRig, OdometryRigError,
+    RigEstimate, Step, StereoOdometry,
 };
 
 /// The odometry is made and moved on the stack.
@@ -46,7 +47,7 @@ pub enum RunError<E: std::error::Error> {
 const AHEAD: usize = 2;
 
 /// How frames are gone through.
-#[derive(Clone, Copy, PartialEq, Eq, Debug)]
+#[derive(Clone, Copy, PartialEq, Debug)]
 pub struct RunConfig {
     /// The last views that are adjusted together, [`MOST_VIEWS`] at most; with fewer than two every pose
     /// stays as it was told.
@@ -54,11 +55,13 @@ pub struct RunConfig {
     /// Whether a pair is corrected by what its points' motion shows, once that is sure. Frames up to the 64th
     /// that came before are then gone through again.
     pub corrects_rig: bool,
+    /// How the right camera of a pair is turned as the rows of its first frame say, where it is corrected.
+    pub rows: Option<RowAlignment<f64>>,
 }
 
 impl Default for RunConfig {
     fn default() -> Self {
-        Self { views: VIEWS, corrects_rig: true }
+        Self { views: VIEWS, corrects_rig: true, rows: None }
     }
 }
 
@@ -85,7 +88,7 @@ where
         let thread = || std::thread::Builder::new().stack_size(STACK);
         thread().spawn_scoped(scope, read).map_err(RunError::Thread)?;
         let (to_smoother, steps) = sync_channel(AHEAD);
-        let follow = move || follow(rig, receiver, config.corrects_rig, told, &to_smoother);
+        let follow = move || follow(rig, receiver, &config, told, &to_smoother);
         let following = thread().spawn_scoped(scope, follow).map_err(RunError::Thread)?;
         let smooth = move || smooth(rig, config.views, steps);
         let smoothing = thread().spawn_scoped(scope, smooth).map_err(RunError::Thread)?;
@@ -105,16 +108,20 @@ enum Either {
 }
 
 impl Either {
-    fn start(rig: &Rig, config: OdometryConfig) -> Result<Self, OdometryRigError> {
+    fn start<E: std::error::Error>(rig: &Rig, config: &RunConfig, width: u16) -> Result<Self, RunError<E>> {
+        let (corrects_rig, of_width) = (config.corrects_rig, OdometryConfig::new(width));
+        let follow = OdometryConfig { corrects_rig, ..of_width };
         match rig {
             Rig::Stereo(rig) => {
+                let rig = OdometryRig::stereo(rig)?;
+                let rows = config.rows.filter(|_| corrects_rig);
                 let mut odometry = Box::<StereoOdometry<_, _>>::default();
-                odometry.start(rig, config)?;
+                odometry.as_mut_view().start(rows.map_or(rig, |rows| rig.with_rows(&rows)), follow)?;
                 Ok(Self::Stereo(odometry))
             }
             Rig::Mono(camera) => {
                 let mut odometry = Box::<MonocularOdometry<_, _>>::default();
-                odometry.start(*camera, config);
+                odometry.start(*camera, follow);
                 Ok(Self::Mono(odometry))
             }
         }
@@ -148,7 +155,7 @@ impl Either {
 fn follow<E: std::error::Error>(
     rig: &Rig,
     frames: Receiver<Result<Prepared, RunError<E>>>,
-    corrects_rig: bool,
+    config: &RunConfig,
     told: impl Fn(&Step<f64>),
     sender: &SyncSender<Told>,
 ) -> Result<(), RunError<E>> {
@@ -158,7 +165,7 @@ fn follow<E: std::error::Error>(
         let frame = frame?;
         let follower = match &mut begun {
             Some(follower) => follower,
-            begun @ None => begun.insert(Follower::start(rig, corrects_rig, &frame.left, sender)?),
+            begun @ None => begun.insert(Follower::start(rig, config, &frame.left, sender)?),
         };
         told(&follower.take(&frame)?);
         if follower.has_corrected {
@@ -189,15 +196,14 @@ struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    fn start(
+    fn start<E: std::error::Error>(
         rig: &Rig,
-        corrects_rig: bool,
+        config: &RunConfig,
         left: &GrayImage,
         sender: &'a SyncSender<Told>,
-    ) -> Result<Self, OdometryRigError> {
+    ) -> Result<Self, RunError<E>> {
         // Pictures have at most 4096 columns and rows.
-        let config = OdometryConfig { corrects_rig, ..OdometryConfig::new(left.width() as u16) };
-        let odometry = Either::start(rig, config)?;
+        let odometry = Either::start(rig, config, left.width() as u16)?;
         Ok(Self { odometry, sender, is_corrected: false, has_corrected: false })
     }
 

@@ -1,4 +1,4 @@
-//! Cameras that `odometry` refuses.
+//! Cameras that `odometry` refuses, and rows that it corrects.
 
 use super::odometry::walk;
 use super::support::{Bench, stereo, text};
@@ -53,4 +53,28 @@ fn where_all_frames_are_lost_is_no_success() {
     let said = text(&run.stderr);
     assert!(run.status.code() == Some(1) && said.contains("street: 3 of 3 frames are lost"), "{said}");
     assert_eq!(std::fs::read_to_string(out).expect("poses").lines().count(), 4, "they are written");
+}
+
+#[test]
+fn rows_that_are_off_are_named_and_corrected() {
+    let bench = Bench::new();
+    let street = walk(&bench, "4");
+    for path in (0..4).map(|n| bench.path(&format!("street/right/{n:06}.png"))) {
+        let picture = image::open(&path).expect("a frame").into_luma8();
+        let lower = image::GrayImage::from_fn(200, 100, |x, y| *picture.get_pixel(x, y.saturating_sub(3)));
+        lower.save(path).expect("room");
+    }
+    let (calib, out) = (format!("{street}/calib.txt"), bench.path("found.txt").display().to_string());
+    let mut args = vec!["odometry", "--sequence", &street, "--calib", &calib, "--out", &out];
+    let run = stereo(&args);
+    let (said, warned) = (text(&run.stdout), text(&run.stderr));
+    assert!(run.status.success() && said.contains("frames       3 tracked"), "{said}{warned}");
+    assert!(
+        warned.contains("street: the rows of the images are 3.") && warned.lines().count() == 1,
+        "{warned}"
+    );
+    args.push("--keep-rig");
+    let run = stereo(&args);
+    let warned = text(&run.stderr);
+    assert!(run.status.code() == Some(1) && warned.contains("3 of 3 frames are lost"), "{warned}");
 }

@@ -4,8 +4,8 @@ use crate::support::{camera, stereo};
 use image::GrayImage;
 use std::convert::Infallible;
 use std::sync::LazyLock;
-use stereopsis::geometry::camera::RectifiedRig;
-use stereopsis::motion::odometry::RigEstimate;
+use stereopsis::geometry::{camera::RectifiedRig, rectify::RowAlignment};
+use stereopsis::motion::odometry::{RigEstimate, State};
 use stereopsis_host::odometry::error::drift;
 use stereopsis_host::odometry::run::{Rig, RunConfig, run};
 use stereopsis_host::scene::MovingScene;
@@ -61,21 +61,34 @@ fn what_is_not_asked_for_is_reported_and_not_corrected() {
     );
 }
 
+/// The frames with right pictures that show at each place what those of the drive show there.
+fn moved(place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<(GrayImage, GrayImage)> {
+    let mut frames = DRIVE.1.clone();
+    for (_, right) in &mut frames {
+        let level = right.clone();
+        let (w, h) = level.dimensions();
+        for (x, y, pixel) in right.enumerate_pixels_mut() {
+            let [x, y] = place(x.into(), y.into());
+            let (left, top, right, below) = (x.floor(), y.floor(), x - x.floor(), y - y.floor());
+            let at = |dx: f64, dy: f64| {
+                let (x, y) =
+                    ((left + dx).clamp(0.0, f64::from(w) - 1.0), (top + dy).clamp(0.0, f64::from(h) - 1.0));
+                f64::from(level.get_pixel(x as u32, y as u32).0[0])
+            };
+            let row = |dy: f64| at(0.0, dy) * (1.0 - right) + at(1.0, dy) * right;
+            pixel.0[0] = (row(0.0) * (1.0 - below) + row(1.0) * below).round() as u8;
+        }
+    }
+    frames
+}
+
 #[test]
 fn a_camera_that_is_turned() {
     // Columns of the right camera as one that is turned by 3 mrad to the right sees them.
-    let (street, mut frames) = DRIVE.clone();
+    let street = &DRIVE.0;
     let (camera, yaw) = (camera(&street.rig()), 0.003_f64);
     let (focal, (cx, _)) = (camera.focal_px().0, camera.principal_point());
-    for (_, right) in &mut frames {
-        let level = right.clone();
-        for (x, y, pixel) in right.enumerate_pixels_mut() {
-            let straight = (((f64::from(x) - cx) / focal).atan() + yaw).tan() * focal + cx;
-            let (whole, part) = (straight.floor(), straight.fract());
-            let at = |x: f64| f64::from(level.get_pixel(x.clamp(0.0, 319.0) as u32, y).0[0]);
-            pixel.0[0] = (at(whole) * (1.0 - part) + at(whole + 1.0) * part).round() as u8;
-        }
-    }
+    let frames = moved(|x, y| [(((x - cx) / focal).atan() + yaw).tan() * focal + cx, y]);
     let trajectory = stereo(street.rig(), &frames);
     let rig: &RigEstimate<f64> = trajectory.rigs.last().expect("an estimate");
     // 0.576 px in the middle: parts of it may be taken for the principal point's.
@@ -84,4 +97,47 @@ fn a_camera_that_is_turned() {
     assert!((rig.yaw_rad - yaw).abs() < 4.0 * deviation + 0.2 * yaw, "{rig:?}");
     let share = drift(&trajectory.poses, &street.truth(), 5.0, 1.0).expect("ways").translation;
     assert!(share < 0.012, "{share}");
+}
+
+#[test]
+fn a_roll_and_a_longer_lens_are_told_by_rows() {
+    let street = &DRIVE.0;
+    let (cx, cy) = camera(&street.rig()).principal_point();
+    let truth = street.truth();
+    for (roll, scale) in [(0.006_f64, 1.0), (0.0, 1.008), (-0.01, 0.994)] {
+        // The right picture shows at `p` what it should show at `p` turned back and shrunk.
+        let (sin, cos) = roll.sin_cos();
+        let frames = moved(|x, y| {
+            let [x, y] = [(x - cx) / scale, (y - cy) / scale];
+            [cx + cos * x + sin * y, cy + cos * y - sin * x]
+        });
+        let trajectory = stereo(street.rig(), &frames);
+        let rig = trajectory.rigs.last().expect("an estimate");
+        assert!(rig.is_sure && rig.is_applied && !rig.is_off(), "{rig:?}");
+        assert!((rig.roll_rad - roll).abs() < 3e-4 && (rig.scale - scale).abs() < 3e-4, "{rig:?}");
+        assert!(rig.disparity_px.abs() < 4.0 * rig.sigma_px, "{rig:?}");
+        // By a principal point and a yaw alone it is 4 % and more.
+        let share = drift(&trajectory.poses, &truth, 5.0, 1.0).expect("ways").translation;
+        assert!(share < 0.005, "{roll} {scale}: {share}");
+    }
+}
+
+#[test]
+fn rows_that_are_known_to_be_off_are_found_again() {
+    let street = &DRIVE.0;
+    let frames = moved(|x, y| [x, y - 3.0]);
+    let focal = camera(&street.rig()).focal_px().0;
+    let run_of = |rows: Option<RowAlignment<f64>>| {
+        let frames = frames.iter().cloned().map(|(left, right)| Ok::<_, Infallible>((left, Some(right))));
+        let config = RunConfig { rows, ..RunConfig::default() };
+        run(&Rig::Stereo(street.rig()), frames, config, |_| ()).expect("a trajectory")
+    };
+    assert!(run_of(None).count(State::Tracked) < FRAMES / 2);
+    // Three pixels lower is a turn up.
+    let rows = RowAlignment { rotation_rad: [-3.0 / focal, 0.0, 0.0], sigma_rad: [1e-3; 3] };
+    let trajectory = run_of(Some(rows));
+    let rig = trajectory.rigs.last().expect("an estimate");
+    assert_eq!(trajectory.count(State::Tracked), FRAMES - 1);
+    assert!(rig.is_applied && (rig.lower_px - 3.0).abs() < 0.05, "{rig:?}");
+    assert!(drift(&trajectory.poses, &street.truth(), 5.0, 1.0).expect("ways").translation < 0.005);
 }

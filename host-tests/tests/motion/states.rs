@@ -16,7 +16,13 @@ type Frames = Vec<(GrayImage, GrayImage)>;
 /// Poses as they are told when a frame comes, by the pair as it was calibrated.
 fn as_told(rig: RectifiedRig, frames: &[(GrayImage, GrayImage)]) -> Trajectory {
     let frames = frames.iter().map(|(left, right)| Ok::<_, Infallible>((left.clone(), Some(right.clone()))));
-    run(&Rig::Stereo(rig), frames, RunConfig { views: 0, corrects_rig: false }, |_| ()).expect("a trajectory")
+    run(
+        &Rig::Stereo(rig),
+        frames,
+        RunConfig { views: 0, corrects_rig: false, ..RunConfig::default() },
+        |_| (),
+    )
+    .expect("a trajectory")
 }
 
 fn street(frames: usize) -> (MovingScene, Frames) {

@@ -1,9 +1,10 @@
 //! Configuration of the odometry and its cameras.
 
-use super::right_columns::RightColumns;
+use super::right_error::RightError;
 use crate::geometry::{
     Real,
     camera::{Camera, RectifiedRig},
+    rectify::RowAlignment,
 };
 
 /// One camera, or a pair whose rows are aligned.
@@ -13,8 +14,8 @@ pub struct OdometryRig<T: Real> {
     pub(super) camera: Camera<T>,
     /// The baseline, m, and the right camera's column of the principal point, px.
     pub(super) right: Option<(T, T)>,
-    /// What the right camera's columns are off by.
-    pub(super) columns: RightColumns<T>,
+    /// What the right camera is off by.
+    pub(super) error: RightError<T>,
 }
 
 /// Why numbers are no rig of an odometry.
@@ -36,7 +37,7 @@ error_text!(OdometryRigError {
 impl<T: Real> OdometryRig<T> {
     /// One camera, whose lens may distort.
     pub const fn one(camera: Camera<T>) -> Self {
-        Self { camera, right: None, columns: RightColumns::NONE }
+        Self { camera, right: None, error: RightError::NONE }
     }
 
     /// Two cameras with aligned rows.
@@ -47,14 +48,26 @@ impl<T: Real> OdometryRig<T> {
         let camera = camera.map_err(|_| OdometryRigError::Camera)?;
         // u' = f (X - b) / Z + cx', and doffs = cx' - cx.
         let right_cx = of(cx) + of(rig.disparity_offset_px());
-        Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)), columns: RightColumns::NONE })
+        Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)), error: RightError::NONE })
     }
 
-    /// What has to be added to a disparity whose right place is in that column, px.
-    pub(super) fn correction_px(&self, right_x_px: f32) -> f32 {
-        let Some((_, right_cx)) = self.right else { return 0.0 };
-        let x = (T::of(right_x_px.into()) - right_cx) / self.focal();
-        (self.columns.correction(x) * self.focal()).to_f64() as f32
+    /// The pair with a right camera that is turned about X and Z as its rows say. Without it rows that are off
+    /// by more than 1.5 px are looked for in vain.
+    #[must_use]
+    pub fn with_rows(mut self, rows: &RowAlignment<T>) -> Self {
+        let [pitch, _, roll] = rows.rotation_rad;
+        // Rows sink by `w_x (-1 - y^2)`.
+        self.error = RightError { row: -pitch, roll, ..self.error };
+        self
+    }
+
+    /// What has to be added to the disparity of a point that the right camera sees there, and how much lower
+    /// it sees that than it should, px.
+    pub(super) fn correction_px(&self, [x, y]: [f32; 2]) -> [f32; 2] {
+        let Some((_, right_cx)) = self.right else { return [0.0; 2] };
+        let centred = [T::of(x.into()) - right_cx, T::of(y.into()) - self.camera.principal_point().1];
+        let place = centred.map(|px| px / self.focal());
+        [self.error.correction(place), self.error.row_at(place)].map(|x| (x * self.focal()).to_f64() as f32)
     }
 
     /// The baseline, m; zero of one camera.

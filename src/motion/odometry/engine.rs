@@ -164,7 +164,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
         let _ = self.progress.rig.push(rig);
         self.progress.config = config;
         self.progress.frames = 0;
-        self.progress.calibration.reset();
+        self.progress.calibration.reset(&rig);
         self.forget();
     }
 
@@ -284,7 +284,7 @@ impl<'a, T: Real> OdometryView<'a, T> {
     /// All points are new.
     fn anchor(&mut self) {
         let Some(rig) = self.progress.rig.first().filter(|rig| rig.right.is_some()) else { return };
-        self.progress.calibration.anchor(rig, &rig.columns, self.map.tracks, &[]);
+        self.progress.calibration.anchor(rig, &rig.error, self.map.tracks, &[]);
     }
 
     /// How the pair differs from its calibration; `None` of one camera.

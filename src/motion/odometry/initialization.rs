@@ -110,7 +110,7 @@ fn align<T: Real>(now: &Moment<'_, T>, map: &mut PointMap<'_, T>, tracker: &mut 
         // A corner is three times as far off as what its pixels say.
         let sigma = if aligned.is_some() { fine } else { fine * T::of(3.0) };
         let observation = PointObservation { at, in_right: false, sigma };
-        tracker.matches.push(PointMatch { point: track.point, observation, owner });
+        tracker.matches.push(PointMatch { point: track.point, observation, lower_px: 0.0, owner });
     }
 }
 

@@ -19,8 +19,9 @@
 //! 5. `inverse_depth`: what was seen makes the points surer; they move into the new camera's frame.
 //! 6. `point_map`: new points where there are none, by the right picture at once, of one camera with a depth
 //!    that is not known yet.
-//! 7. `self_calibration`: what the right camera's columns are off by, from `two_views` of the same points at
-//!    a time; the rig is corrected by it when [`OdometryConfig::corrects_rig`] says so.
+//! 7. `self_calibration`: what the right camera is off by: along columns from `two_views` of the same points
+//!    at a time, and along rows from what both pictures show of them (`right_rows`); the rig is corrected by
+//!    it when [`OdometryConfig::corrects_rig`] says so.
 //! 8. `initialization`: of one camera, the first two views: their essential matrix, and with it the unit of
 //!    length.
 //! 9. `sliding_window`: who holds a [`Refinement`] beside it has the last views adjusted together with each
@@ -29,7 +30,7 @@
 //! [`StereoOdometry`] gives metres; [`MonocularOdometry`] lengths without a unit, each an [`Unscaled`] number
 //! of first baselines.
 
-mod right_columns;
+mod right_error;
 mod config;
 mod frame;
 mod step;
@@ -42,6 +43,7 @@ mod disparity;
 mod pose_estimate;
 mod point_map;
 mod tracking;
+mod right_rows;
 mod two_views;
 mod self_calibration;
 mod initialization;

@@ -174,7 +174,8 @@ fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual_inverse: T) 
         Some((baseline, right_cx)) => {
             let offset = (right_cx - rig.camera.principal_point().0).to_f64() as f32;
             let here = pixel[0] + offset;
-            let row = (pixel[1] + 0.5) as usize;
+            let [_, lower] = rig.correction_px([here, pixel[1]]);
+            let row = (pixel[1] + lower + 0.5).max(0.0) as usize;
             let (least, last) = (
                 (here - f32::from(now.config.most_disparity_px)).max(0.0) as usize,
                 (here + 2.0).max(0.0) as usize,
@@ -184,8 +185,8 @@ fn new_track<T: Real>(now: &Moment<'_, T>, feature: &Feature, usual_inverse: T) 
             if along.correlation < CORRELATED || !clear {
                 return None;
             }
-            let expected = here - along.x_px + rig.correction_px(along.x_px);
-            let disparity = disparity(now, pixel, expected)?;
+            let [correction, _] = rig.correction_px([along.x_px, pixel[1]]);
+            let [disparity, _] = disparity(now, pixel, here - along.x_px + correction)?;
             let r = T::of(disparity.into()) / (rig.focal() * baseline);
             let variance = sigma * sigma;
             let of_depth = variance / (baseline * baseline);

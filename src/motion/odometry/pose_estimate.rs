@@ -13,13 +13,16 @@ use nalgebra::{SMatrix, Vector3};
 pub struct PointMatch<T: Real> {
     pub(super) point: InversePoint<T>,
     pub(super) observation: PointObservation<T>,
+    /// How much lower the right picture shows it than the left one, px, where the right camera sees it.
+    pub(super) lower_px: f32,
     /// Whose point it is.
     pub(super) owner: u16,
 }
 
 impl<T: Real> PointMatch<T> {
     /// Not in use. All zeros.
-    pub const EMPTY: Self = Self { point: InversePoint::ZERO, observation: PointObservation::ZERO, owner: 0 };
+    pub const EMPTY: Self =
+        Self { point: InversePoint::ZERO, observation: PointObservation::ZERO, lower_px: 0.0, owner: 0 };
 
     /// The match as it is where the right camera is not believed: without its observation, and with so much
     /// more variance of the inverse depth. With none it stays as it is.
@@ -224,7 +227,7 @@ mod tests {
                 in_right: true,
                 sigma: 1e-3,
             };
-            PointMatch { point, observation, owner: 0 }
+            PointMatch { point, observation, lower_px: 0.0, owner: 0 }
         })
     }
 

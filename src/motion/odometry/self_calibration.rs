@@ -1,14 +1,16 @@
-//! Self-calibration of a moving pair: an information filter on the right camera's columns (Dang et al. 2009).
+//! Self-calibration of a moving pair: an information filter on the right camera (Dang et al. 2009).
 //!
 //! A disparity that is off by o puts a point at `f b / (d + o)`. How far points move between two pictures of
 //! the left camera is linear in their inverse depths: where it is not zero for those that the pair sees at
 //! infinity, the pair is off. So the error is estimated beside the motion from points that both views of both
-//! cameras see, with what was known of it before as a prior.
+//! cameras see, with what was known of it before as a prior. A roll and another focal length move columns,
+//! too, and would be taken for it; they show in rows, and are known from there.
 
 use super::config::OdometryRig;
 use super::frame::Moment;
 use super::pose_estimate::PointMatch;
-use super::right_columns::RightColumns;
+use super::right_error::RightError;
+use super::right_rows::RightRows;
 use super::track::Track;
 use super::two_views::PairOfViews;
 use crate::geometry::linear::{NormalEquations, inverse_information, levenberg_marquardt};
@@ -26,6 +28,8 @@ const SURE_PAIRS: u32 = 3;
 /// What is corrected is over so many px and deviations.
 const LEAST_PX: f64 = 0.05;
 const DEVIATIONS: f64 = 2.0;
+/// Rows that are off by more in the middle are corrected, px: partners are looked for within a few.
+const LEAST_ROW_PX: f64 = 0.25;
 /// Two views are compared when fewer than four fifths of the points are left, or after so many frames: of a
 /// longer way each point says more, of a shorter one more of them do.
 const MOST_FRAMES: u8 = 16;
@@ -45,7 +49,8 @@ const MEMORY: u32 = 32;
 /// What is known of the right camera beyond what is corrected already.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SelfCalibration<T: Real> {
-    mean: RightColumns<T>,
+    mean: RightError<T>,
+    rows: RightRows<T>,
     covariance: [[T; 2]; 2],
     /// The mean square of the innovations, in what they are expected to be.
     excess: T,
@@ -57,7 +62,7 @@ pub(super) struct SelfCalibration<T: Real> {
     is_applied: bool,
 }
 
-/// How a pair differs from its calibration along the rows, as its points' motion shows.
+/// How a pair differs from its calibration, as its points' motion and their rows show.
 #[derive(Clone, Copy, PartialEq, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -73,6 +78,12 @@ pub struct RigEstimate<T> {
     pub yaw_rad: T,
     /// Covariance of `principal_px` and `yaw_rad`.
     pub covariance: [[T; 2]; 2],
+    /// How much lower the right picture shows the middle than the left one, px, by the rows of the points.
+    pub lower_px: T,
+    /// How far the right camera is turned about its own axis, radians: what is on its right stands lower.
+    pub roll_rad: T,
+    /// How many times as large as the left picture the right one is.
+    pub scale: T,
     /// Pairs of views that were compared.
     pub pairs: u32,
     /// Whether there is enough behind it, to a tenth of a pixel, to correct the pair by.
@@ -92,7 +103,8 @@ impl<T: Real> RigEstimate<T> {
 impl<T: Real> SelfCalibration<T> {
     /// Of no pair. All zeros.
     pub const EMPTY: Self = Self {
-        mean: RightColumns::NONE,
+        mean: RightError::NONE,
+        rows: RightRows::EMPTY,
         covariance: [[T::ZERO; 2]; 2],
         excess: T::ZERO,
         since: Pose::NOTHING,
@@ -102,10 +114,11 @@ impl<T: Real> SelfCalibration<T> {
         is_applied: false,
     };
 
-    /// Before the first frame: nothing is known.
-    pub fn reset(&mut self) {
+    /// Before the first frame: no more is known than what the rig is corrected by.
+    pub fn reset(&mut self, rig: &OdometryRig<T>) {
         let (p, o) = (T::of(PRIOR * PRIOR), T::ZERO);
-        *self = Self { covariance: [[p, o], [o, p]], since: Pose::identity(), ..Self::EMPTY };
+        let is_applied = rig.error != RightError::NONE;
+        *self = Self { covariance: [[p, o], [o, p]], since: Pose::identity(), is_applied, ..Self::EMPTY };
     }
 
     /// Before a first frame again: what is known counts a hundredth, for frames that are seen again say
@@ -117,17 +130,20 @@ impl<T: Real> SelfCalibration<T> {
 
     /// The estimate, with what is corrected already.
     pub fn estimate(&self, rig: &OdometryRig<T>) -> RigEstimate<T> {
-        let (f, all) = (rig.focal(), rig.columns.plus(&self.mean));
+        let (f, all) = (rig.focal(), rig.error.plus(&self.mean));
         let more = self.excess.max(T::ONE);
         let [[a, b], [_, d]] = self.covariance.map(|row| row.map(|x| x * more));
         let floor = T::of(FLOOR_PX * FLOOR_PX);
         let sigma_px = ((a - b - b + d).max(T::ZERO) * f * f + floor).sqrt();
         RigEstimate {
-            disparity_px: all.correction(T::ZERO) * f,
+            disparity_px: all.in_middle() * f,
             sigma_px,
             principal_px: all.principal * f,
             yaw_rad: all.yaw,
             covariance: [[a * f * f, b * f], [b * f, d]],
+            lower_px: all.row * f,
+            roll_rad: all.roll,
+            scale: T::ONE + all.scale,
             pairs: self.pairs,
             is_sure: self.pairs >= SURE_PAIRS && sigma_px < T::of(SURE_PX),
             is_applied: self.is_applied,
@@ -153,6 +169,11 @@ impl<T: Real> SelfCalibration<T> {
         if rig.right.is_none() {
             return;
         }
+        self.rows.add(now, matches);
+        let [row, roll, scale] = self.rows.error();
+        let is = rig.error;
+        self.mean =
+            RightError { row: row - is.row, roll: roll - is.roll, scale: scale - is.scale, ..self.mean };
         let pair = PairOfViews {
             tracks: &*tracks,
             matches,
@@ -165,12 +186,15 @@ impl<T: Real> SelfCalibration<T> {
         if self.frames < MOST_FRAMES && 5 * common > 4 * self.anchored {
             return;
         }
-        let before = rig.columns;
+        let before = rig.error;
         if common >= FEWEST {
             self.measure(&pair);
             let found = self.estimate(rig);
-            let off = self.mean.correction(T::ZERO).abs() * rig.focal();
-            let is_off = off > T::of(LEAST_PX) && off > found.sigma_px * T::of(DEVIATIONS);
+            let px = |x: T| x.abs() * rig.focal();
+            let (off, aside) = (px(self.mean.in_middle()), px(self.mean.aside()));
+            let is_off = (off > T::of(LEAST_PX) && off > found.sigma_px * T::of(DEVIATIONS))
+                || aside > T::of(LEAST_PX)
+                || px(self.mean.row) > T::of(LEAST_ROW_PX);
             if now.config.corrects_rig && found.is_sure && (self.is_applied || is_off) {
                 self.apply(rig, tracks);
             }
@@ -183,7 +207,7 @@ impl<T: Real> SelfCalibration<T> {
     pub fn anchor(
         &mut self,
         rig: &OdometryRig<T>,
-        before: &RightColumns<T>,
+        before: &RightError<T>,
         tracks: &mut [Track<T>],
         matches: &[PointMatch<T>],
     ) {
@@ -196,8 +220,8 @@ impl<T: Real> SelfCalibration<T> {
             if let Some(track) = tracks.get_mut(usize::from(found.owner)).filter(|track| track.is_followed())
             {
                 let at = found.observation.at;
-                let x = at.x - at.z;
-                let z = at.z + rig.columns.correction(x) - before.correction(x);
+                let place = [at.x - at.z, at.y];
+                let z = at.z + rig.error.correction(place) - before.correction(place);
                 track.anchor = Some(Vector3::new(at.x, at.y, z));
             }
         }
@@ -211,9 +235,9 @@ impl<T: Real> SelfCalibration<T> {
             row.iter_mut().skip(i).take(1).for_each(|x| *x += T::of(DRIFT * DRIFT));
         }
         let start = (self.since, self.mean);
-        let Some(((pose, columns), _)) = levenberg_marquardt(pair, start, STEPS) else { return };
+        let Some(((pose, error), _)) = levenberg_marquardt(pair, start, STEPS) else { return };
         // What the points alone say there, in units of the noise that there is.
-        let (data, kept, squares) = pair.equations_of_points(&pose, &columns);
+        let (data, kept, squares) = pair.equations_of_points(&pose, &error);
         if kept < FEWEST {
             return;
         }
@@ -225,11 +249,12 @@ impl<T: Real> SelfCalibration<T> {
             to.iter_mut().zip(from).for_each(|(to, &from)| *to = from * scale);
         }
         all.right = data.right.map(|x| x * scale);
-        pair.add_prior(&mut all, &columns);
+        pair.add_prior(&mut all, &error);
         let covariance = inverse_information(&all.matrix);
         let [.., principal, yaw] = covariance;
         let step = |row: &[T; 8]| row.iter().zip(&all.right).fold(T::ZERO, |sum, (&a, &b)| sum + a * b);
-        let mean = columns.plus(&RightColumns { principal: step(&principal), yaw: step(&yaw) });
+        let [by_principal, by_yaw] = [step(&principal), step(&yaw)];
+        let mean = error.plus(&RightError { principal: by_principal, yaw: by_yaw, ..RightError::NONE });
         let [[.., a, b], [.., d]] = [principal, yaw];
         if !(a > T::ZERO && d > T::ZERO && mean.principal.is_finite() && mean.yaw.is_finite()) {
             return;
@@ -237,7 +262,7 @@ impl<T: Real> SelfCalibration<T> {
         // The middle's innovation beside its own variance: one if all is as it is taken to be.
         let [[p, q], [_, r]] = self.covariance;
         let gained = (p - q - q + r) - (a - b - b + d);
-        let moved = mean.correction(T::ZERO) - self.mean.correction(T::ZERO);
+        let moved = mean.in_middle() - self.mean.in_middle();
         if gained > T::ZERO {
             let share = T::ONE / T::count(self.pairs.saturating_add(1).min(MEMORY) as usize);
             self.excess += (moved * moved / gained - self.excess) * share;
@@ -258,11 +283,11 @@ impl<T: Real> SelfCalibration<T> {
         let baseline = rig.baseline();
         for track in tracks.iter_mut().filter(|track| track.used) {
             let at = &mut track.point.at;
-            let right = at.x - baseline * at.z;
-            at.z += self.mean.correction(right) / baseline;
+            let place = [at.x - baseline * at.z, at.y];
+            at.z += self.mean.correction(place) / baseline;
         }
-        rig.columns = rig.columns.plus(&self.mean);
-        self.mean = RightColumns::NONE;
+        rig.error = rig.error.plus(&self.mean);
+        self.mean = RightError::NONE;
         self.is_applied = true;
     }
 }

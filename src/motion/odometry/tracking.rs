@@ -165,7 +165,7 @@ impl<T: Real> Tracker<'_, T> {
                 continue;
             };
             let observation = PointObservation { at, in_right: false, sigma };
-            self.matches.push(PointMatch { point: track.point, observation, owner });
+            self.matches.push(PointMatch { point: track.point, observation, lower_px: 0.0, owner });
         }
         let found = self.problem(now.rig.baseline()).solve(last, Free::Rotation);
         (found.kept >= 2 * FEWEST && 2 * found.kept >= self.matches.len()).then_some(found.pose)
@@ -209,14 +209,15 @@ impl<T: Real> Tracker<'_, T> {
             let Ok(observation) = rig.camera.unproject(&pixel) else { continue };
             (track.now, track.correlation) = (Some(place), found.correlation);
             let expected = rig.baseline() * moved.at.z * rig.focal();
-            let disparity = disparity(now, place, of(expected));
-            let third = disparity.map_or(T::ZERO, |d| T::of(d.into()) / rig.focal());
+            let seen = disparity(now, place, of(expected));
+            let [disparity, lower] = seen.unwrap_or([0.0; 2]);
+            let third = T::of(disparity.into()) / rig.focal();
             let observation = PointObservation {
                 at: Vector3::new(observation.x, observation.y, third),
-                in_right: disparity.is_some(),
+                in_right: seen.is_some(),
                 sigma,
             };
-            self.matches.push(PointMatch { point: track.point, observation, owner });
+            self.matches.push(PointMatch { point: track.point, observation, lower_px: lower, owner });
         }
     }
 }

@@ -122,6 +122,14 @@ impl<'a> Looked<'a> {
         let fault = pair::fault(self.pictures, matches);
         fault.filter(|&fault| fault != PairFault::Swapped || !matches.are_in_front(self.offset_px))
     }
+
+    /// How the rows lie; rows of images that are turned or mirrored say nothing of the cameras.
+    fn rows(&self, matches: &PairMatches, fault: Option<PairFault>) -> Option<Rows> {
+        // Pictures have at most 4096 columns and rows.
+        let (width, height) = (self.pictures[0].width() as u16, self.pictures[0].height() as u16);
+        let has_rows = matches!(fault, None | Some(PairFault::Swapped));
+        has_rows.then(|| Rows::measure(matches, ImageSize { width, height }, self.camera)).flatten()
+    }
 }
 
 /// Whether two raw pictures are one that shows something.
@@ -129,19 +137,24 @@ pub fn are_same(left: &GrayImage, right: &GrayImage) -> bool {
     left.as_raw() == right.as_raw() && !pair::is_blank(left)
 }
 
-/// Refuses a pair of swapped cameras, or the picture of one twice; `exchanged` is what the pictures would be
-/// if the cameras were exchanged before they are rectified.
-pub fn refuse_unpaired(
+/// How the rows of a pair lie, where it shows enough. A pair of swapped cameras, or the picture of one twice,
+/// is refused unless that is forced; `exchanged` is what the pictures would be if the cameras were exchanged
+/// before they are rectified.
+pub fn rows_of_pair(
     looked: &Looked<'_>,
+    is_forced: bool,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
-) -> Result<(), Failure> {
+) -> Result<Option<Rows>, Failure> {
     // Where nothing is found nothing is said.
-    let Ok(matches) = PairMatches::find(looked.pictures, None) else { return Ok(()) };
+    let Ok(matches) = PairMatches::find(looked.pictures, None) else { return Ok(None) };
     let fault = looked.fault(&matches);
-    if fault == Some(PairFault::Same) {
+    if !is_forced && fault == Some(PairFault::Same) {
         return Err(Failure::new(format!("{}, or give --force", PairFault::Same)));
     }
-    if is_swapped(fault, &matches, exchanged) { Err(swapped()) } else { Ok(()) }
+    if !is_forced && is_swapped(fault, &matches, exchanged) {
+        return Err(swapped());
+    }
+    Ok(looked.rows(&matches, fault))
 }
 
 fn swapped() -> Failure {
@@ -186,7 +199,7 @@ pub fn look(
     looked: &Looked<'_>,
     exchanged: impl FnOnce() -> Option<RectifiedPictures>,
 ) -> Result<Look, Failure> {
-    let &Looked { pictures, valid, camera, .. } = looked;
+    let &Looked { pictures, valid, .. } = looked;
     // Pictures have at most 4096 columns and rows.
     let (width, height) = (pictures[0].width() as u16, pictures[0].height() as u16);
     // Pictures without features are matched as well as they can be.
@@ -212,9 +225,7 @@ pub fn look(
     let config = Config { confidence: true, ..config };
     let Some(matches) = matches else { return Ok(Look { config, check: None, rows: None }) };
     let check = PairCheck::new(pictures, valid, &matches, fault, &config);
-    // Rows of images that are turned or mirrored say nothing of the cameras.
-    let has_rows = matches!(check.fault, None | Some(PairFault::Swapped));
-    let rows = has_rows.then(|| Rows::measure(&matches, ImageSize { width, height }, camera)).flatten();
+    let rows = looked.rows(&matches, check.fault);
     Ok(Look { config, check: Some(check), rows })
 }
 

@@ -5,10 +5,11 @@ mod summary;
 use crate::failure::Failure;
 use crate::image_files::gap;
 use crate::input::fits;
-use crate::look::{Looked, are_same, refuse_unpaired};
+use crate::look::{Looked, are_same, rows_of_pair};
 use crate::place::{Content, Place};
 use crate::progress::Progress;
 use crate::rig::warn_of;
+use crate::scale::camera;
 use crate::shared::{Unit, print, remark, whole};
 use clap::{Args, ValueEnum};
 use image::GrayImage;
@@ -26,6 +27,7 @@ use stereopsis_host::odometry::run::{MOST_VIEWS, Rig, RunConfig, VIEWS, run as f
 use stereopsis_host::odometry::sequence::{Sequence, SequenceError};
 use stereopsis_host::odometry::trajectory::Trajectory;
 use stereopsis_host::rectify::{RectifiedPictures, RectifyPicturesError, rectify};
+use stereopsis_host::rows::Rows;
 use stereopsis_host::scene::SceneCamera;
 use summary::{beside, summary, true_poses};
 
@@ -71,7 +73,7 @@ pub struct OdometryArgs {
     #[arg(long, value_name = "N", default_value_t = VIEWS as u16, value_parser = window,
         allow_negative_numbers = true)]
     pub window: u16,
-    /// Leave a pair as calibrated also where its points' motion shows that it is off
+    /// Leave a pair as calibrated also where its points show that it is off
     #[arg(long)]
     pub keep_rig: bool,
     /// File for the poses
@@ -137,13 +139,10 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         return Err(Failure::usage(format!("--states: {what} is the file of another option; name another")));
     }
 
-    if let (left, Some(right)) = frame(&sequence, cameras.rectification.as_ref(), 0)?
-        && !args.force
-    {
-        let is_given_twice = cameras.rectification.is_some()
-            && matches!(frame(&sequence, None, 0)?, (left, Some(right)) if are_same(&left, &right));
-        let looked = Looked { is_given_twice, ..Looked::of([&left, &right]) };
-        refuse_unpaired(&looked, || exchanged(&sequence, cameras.rectification.as_ref()?))?;
+    let rows = first_rows(args, &sequence, &cameras)?;
+    let rows_warning = rows.as_ref().and_then(Rows::warning);
+    if let Some(warning) = &rows_warning {
+        remark(&format!("warning: {}: {warning}", args.sequence.display()));
     }
     if let Some([before, after]) = &missing {
         remark(&format!(
@@ -155,7 +154,11 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
     }
     let progress = Progress::over_frames(sequence.len());
     let frames = (0..sequence.len()).map(|i| frame(&sequence, cameras.rectification.as_ref(), i));
-    let config = RunConfig { views: args.window.into(), corrects_rig: !args.keep_rig };
+    let config = RunConfig {
+        views: args.window.into(),
+        corrects_rig: !args.keep_rig,
+        rows: rows.filter(|_| rows_warning.is_some()).map(|rows| rows.alignment),
+    };
     let trajectory = follow(&cameras.rig, frames, config, |_| progress.one_more())?;
     drop(progress);
 
@@ -173,9 +176,22 @@ pub fn run(args: &OdometryArgs) -> Result<(), Failure> {
         PoseFormat::Tum => poses::write_tum(out, &trajectory.poses, &times),
     };
     place.write_all(found, others)?;
-    warn_of(trajectory.rigs.last(), args.calib.first().map_or(Path::new(""), PathBuf::as_path));
+    let calib = args.calib.first().map_or(Path::new(""), PathBuf::as_path);
+    warn_of(trajectory.rigs.last(), calib, rows_warning.is_none().then(|| sequence.size()));
     print(&summary(args, &sequence, &cameras, &trajectory, truth.as_ref()))?;
     judge(&trajectory, &args.sequence)
+}
+
+/// How the rows of the first frame lie, where it is a pair that shows enough. Swapped cameras are an error.
+fn first_rows(args: &OdometryArgs, sequence: &Sequence, cameras: &Cams) -> Result<Option<Rows>, Failure> {
+    let rectification = cameras.rectification.as_ref();
+    let (left, Some(right)) = frame(sequence, rectification, 0)? else { return Ok(None) };
+    let is_given_twice = rectification.is_some()
+        && matches!(frame(sequence, None, 0)?, (left, Some(right)) if are_same(&left, &right));
+    let Rig::Stereo(rig) = &cameras.rig else { return Ok(None) };
+    let (camera, offset_px) = (camera(rig), rig.disparity_offset_px().into());
+    let looked = Looked { is_given_twice, camera: camera.as_ref(), offset_px, ..Looked::of([&left, &right]) };
+    rows_of_pair(&looked, args.force, || exchanged(sequence, rectification?))
 }
 
 /// Warns where most frames are lost, and fails where all are: what is written of them is then a guess.

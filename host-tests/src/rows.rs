@@ -16,7 +16,8 @@ const ONE_SIDED_95: f64 = 1.645;
 /// How far rows are off. Names are those of `summary.json`.
 #[derive(Clone, Copy, PartialEq, Debug, Serialize)]
 pub struct Rows {
-    /// The root mean square over the image of how far the right image's rows are from the left one's, px.
+    /// The root mean square over the image of how far the right image's rows are from the left one's, px, by
+    /// these angles and that scale.
     pub error_px: f64,
     /// Its standard deviation.
     pub sigma_px: f64,
@@ -41,14 +42,17 @@ pub struct Rows {
     pub matches: usize,
     /// The share of them whose rows these angles explain, up to a pixel.
     pub agreeing: f64,
-    /// How many times as large as the left image the right one is, where angles alone do not explain the rows
-    /// of most; else 1.
+    /// How many times as large as the left image the right one is, where that moves rows by more than 0.25 px;
+    /// else 1.
     pub scale: f64,
     /// `good`: under 0.25 px; `worn`: up to 0.5 px, answers are lost; `bad`: more.
     pub health: &'static str,
     /// The turn of the right camera.
     #[serde(skip)]
     pub alignment: RowAlignment<f64>,
+    /// What the angles do to rows, px.
+    #[serde(skip)]
+    turned_px: f64,
     /// What the yaw does to rows, and its standard deviation, px.
     #[serde(skip)]
     by_yaw_px: [f64; 2],
@@ -69,20 +73,17 @@ impl Rows {
         // What is turned far, or larger, has many matches in other rows, and rows that no small turn
         // explains.
         let of_all = || RowFit::of(&matches.all, by).filter(RowFit::is_agreed);
-        let scaled = || {
-            RowFit::with_scale(&matches.in_rows, by).filter(|it| it.is_agreed() && it.is_better_than(&fit))
+        let is_scaled = |scaled: &RowFit| {
+            let [px, sigma] = scaled.by_scale_px(size.height);
+            scaled.is_agreed() && scaled.agreeing >= fit.agreeing && px > BORNE_PX && px > 3.0 * sigma
         };
-        let fit = if fit.is_of_most() {
-            fit
-        } else if fit.is_agreed() {
-            scaled().unwrap_or(fit)
-        } else {
-            of_all().or_else(scaled).unwrap_or(fit)
-        };
-        Some(Self::of(&fit, by, camera.is_some(), size, fit.matches))
+        let scaled = || RowFit::with_scale(&matches.in_rows, by).filter(is_scaled);
+        let fit =
+            if fit.is_agreed() { scaled().unwrap_or(fit) } else { of_all().or_else(scaled).unwrap_or(fit) };
+        Some(Self::of(&fit, by, camera.is_some(), size))
     }
 
-    fn of(fit: &RowFit, camera: &Camera<f64>, is_calibrated: bool, size: ImageSize, matches: usize) -> Self {
+    fn of(fit: &RowFit, camera: &Camera<f64>, is_calibrated: bool, size: ImageSize) -> Self {
         let found = &fit.alignment;
         // What an angle alone does to rows.
         let alone = |axis: usize, rad: [f64; 3]| {
@@ -90,10 +91,13 @@ impl Rows {
             rotation_rad[axis] = rad[axis];
             RowAlignment { rotation_rad, sigma_rad: [0.0; 3] }.row_error_px(camera, size)
         };
+        let (turned_px, [scaled_px, scale_sigma_px]) =
+            (found.row_error_px(camera, size), fit.by_scale_px(size.height));
+        let error_px = turned_px.hypot(scaled_px);
         let degrees = |rad: f64| is_calibrated.then(|| rad.to_degrees());
         Self {
-            error_px: found.row_error_px(camera, size),
-            sigma_px: (0..3).map(|axis| alone(axis, found.sigma_rad).powi(2)).sum::<f64>().sqrt(),
+            error_px,
+            sigma_px: (0..3).map(|axis| alone(axis, found.sigma_rad)).fold(scale_sigma_px, f64::hypot),
             lower_px: alone(0, found.rotation_rad).copysign(-found.rotation_rad[0]),
             pitch_deg: degrees(found.rotation_rad[0]),
             pitch_sigma_deg: degrees(found.sigma_rad[0]),
@@ -102,12 +106,13 @@ impl Rows {
             yaw_deg: degrees(found.rotation_rad[1]),
             yaw_sigma_deg: degrees(found.sigma_rad[1]),
             by_yaw_px: [alone(1, found.rotation_rad), alone(1, found.sigma_rad)],
-            matches,
+            matches: fit.matches,
             agreeing: fit.agreeing,
             scale: fit.scale,
             alignment: *found,
             is_agreed: fit.is_agreed(),
-            health: match found.health(camera, size) {
+            turned_px,
+            health: match RowHealth::of_error_px(error_px) {
                 RowHealth::Good => "good",
                 RowHealth::Worn => "worn",
                 RowHealth::Bad => "bad",
@@ -133,16 +138,9 @@ impl Rows {
 
     /// What is wrong, where with a probability of 95 % it is more than matching bears.
     pub fn warning(&self) -> Option<String> {
-        if self.is_agreed && self.scale != 1.0 {
-            let (share, size) =
-                (100.0 * (self.scale - 1.0), if self.scale > 1.0 { "larger" } else { "smaller" });
-            return Some(format!(
-                "the right image is {:.1} % {size} than the left one, so that rows do not agree: the focal \
-                 lengths differ, or the pair is not rectified; calibrate anew or rectify",
-                share.abs()
-            ));
+        if !(self.error_px > BORNE_PX && self.is_sure()) {
+            return None;
         }
-        let is_off = self.error_px > BORNE_PX && self.is_sure();
         let mut turned = match self.pitch_deg {
             Some(pitch) => format!("the right camera seems turned: pitch {pitch:+.2} degrees"),
             None => {
@@ -158,12 +156,22 @@ impl Rows {
                 None => format!(", and {by_yaw:.2} px are of a turn about the vertical or another scale"),
             };
         }
-        is_off.then(|| {
-            format!(
-                "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {turned}; \
-                 calibrate anew or rectify",
-                self.error_px, self.sigma_px
-            )
-        })
+        let share = 100.0 * (self.scale - 1.0);
+        let size = if share > 0.0 { "larger" } else { "smaller" };
+        let scaled = format!(
+            "the right image is {:.1} % {size} than the left one: the focal lengths differ, or the pair is \
+             not rectified",
+            share.abs()
+        );
+        let why = match (self.scale != 1.0, self.turned_px > BORNE_PX) {
+            (false, _) => turned,
+            (true, false) => scaled,
+            (true, true) => format!("{scaled}; {turned}"),
+        };
+        Some(format!(
+            "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {why}; calibrate \
+             anew or rectify",
+            self.error_px, self.sigma_px
+        ))
     }
 }

@@ -84,6 +84,8 @@ pub struct RowFit {
     about: f64,
     /// The share of those whose rows are the same as they are.
     unturned: f64,
+    /// By what share more the right picture is larger, as what is left over of rows says, and its deviation.
+    larger: [f64; 2],
     /// How many matches there are.
     pub matches: usize,
 }
@@ -94,12 +96,23 @@ impl RowFit {
         Self::at_scale(matches, camera, 1.0)
     }
 
-    /// The same, with the scale of the right picture that most matches agree on: up to a tenth larger or
-    /// smaller.
+    /// The same, with the scale of the right picture that the matches say: of up to a tenth larger or smaller
+    /// one that clearly more agree with, as exactly as what is left over of their rows tells.
     pub fn with_scale(matches: &[Correspondence<f64>], camera: &Camera<f64>) -> Option<Self> {
-        let scales = (-20..=20).map(|step| 1.0 + 0.005 * f64::from(step));
+        let scales = (-10..=10).map(|step| 1.0 + 0.01 * f64::from(step));
         let fits = scales.filter_map(|scale| Self::at_scale(matches, camera, scale));
-        fits.max_by(|a, b| a.agreeing.total_cmp(&b.agreeing))
+        let most = fits.max_by(|a, b| a.agreeing.total_cmp(&b.agreeing));
+        let unscaled = Self::of(matches, camera)?;
+        let begin = most.filter(|most| most.is_gain(most.agreeing - unscaled.agreeing)).unwrap_or(unscaled);
+        let again = |fit: Self, _| Self::at_scale(matches, camera, fit.scale * (1.0 + fit.larger[0]));
+        (0..3).try_fold(begin, again)
+    }
+
+    /// The root mean square of what the scale does to the rows of a picture that is so high, px, and its
+    /// deviation.
+    pub fn by_scale_px(&self, height: u16) -> [f64; 2] {
+        // The mean square of a row is a twelfth of the height's square.
+        [(self.scale - 1.0).abs(), self.larger[1]].map(|share| share * f64::from(height) / 12.0_f64.sqrt())
     }
 
     fn at_scale(matches: &[Correspondence<f64>], camera: &Camera<f64>, scale: f64) -> Option<Self> {
@@ -114,18 +127,20 @@ impl RowFit {
         meter.add(camera, &matches).ok()?;
         let alignment = meter.alignment().ok()?;
         let turn = Vector3::from(alignment.rotation_rad);
-        let left_over = |s: &&Correspondence<f64>| {
+        let left_over = |s: &Correspondence<f64>| {
             let there = camera.unproject(&s.second).ok();
             // What is seen at P + w x P is to be at P.
             let back = there.map(|there| there - turn.cross(&there)).filter(|back| back.z > 0.0);
-            back.map_or(f64::INFINITY, |back| (fy * back.y / back.z + cy - s.first.y).abs())
+            back.map_or(f64::INFINITY, |back| fy * back.y / back.z + cy - s.first.y)
         };
+        let left_over: Vec<_> = matches.iter().map(left_over).collect();
         let share =
-            |px: f64| matches.iter().filter(|s| left_over(s) <= px).count() as f64 / matches.len() as f64;
+            |px: f64| left_over.iter().filter(|off| off.abs() <= px).count() as f64 / matches.len() as f64;
+        let larger = slope(matches.iter().map(|s| s.first.y - cy).zip(left_over.iter().copied()));
         let (agreeing, about) = (share(SAME_ROW_PX), share(ABOUT_SAME_ROW_PX));
         let is_unturned = |s: &&Correspondence<f64>| (s.second.y - s.first.y).abs() <= SAME_ROW_PX;
         let unturned = matches.iter().filter(is_unturned).count() as f64 / matches.len() as f64;
-        Some(Self { alignment, scale, agreeing, about, unturned, matches: matches.len() })
+        Some(Self { alignment, scale, agreeing, about, unturned, larger, matches: matches.len() })
     }
 
     /// Whether matches agree on the turn: over half of them by two deviations of such a share, or by as many
@@ -137,11 +152,6 @@ impl RowFit {
     /// Whether over half of the matches agree on the turn.
     pub fn is_of_most(&self) -> bool {
         self.is_most(self.agreeing)
-    }
-
-    /// Whether clearly more matches have the same rows than with another turn: by as many as say anything.
-    pub fn is_better_than(&self, other: &Self) -> bool {
-        self.is_gain(self.agreeing - other.agreeing)
     }
 
     fn is_gain(&self, share: f64) -> bool {
@@ -156,4 +166,19 @@ impl RowFit {
     fn is_most(&self, share: f64) -> bool {
         share > 0.5 + 1.0 / (self.matches as f64).sqrt()
     }
+}
+
+/// The slope through zero of some numbers over their places, and its deviation: what is off by over a pixel
+/// counts little (Geman & McClure 1987).
+fn slope(numbers: impl Iterator<Item = (f64, f64)>) -> [f64; 2] {
+    let [mut weights, mut squares, mut products, mut off] = [0.0; 4];
+    for (at, number) in numbers.filter(|(_, number)| number.is_finite()) {
+        let near = 1.0 / (1.0 + (number / SAME_ROW_PX).powi(2));
+        let weight = near * near;
+        weights += weight;
+        squares += weight * at * at;
+        products += weight * at * number;
+        off += weight * number * number;
+    }
+    if squares > 0.0 { [products / squares, (off / weights / squares).sqrt()] } else { [0.0; 2] }
 }

@@ -14,5 +14,6 @@ mod output;
 mod pair;
 mod pair_moved;
 mod raw_calibration;
+mod rows;
 mod scene;
 mod sequences;

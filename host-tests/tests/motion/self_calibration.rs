@@ -1,7 +1,7 @@
 //! Pairs whose calibration is off along the rows, found while they move.
 
 use crate::support::{camera, stereo};
-use image::GrayImage;
+use image::{GrayImage, Luma, imageops};
 use std::convert::Infallible;
 use std::sync::LazyLock;
 use stereopsis::geometry::{camera::RectifiedRig, rectify::RowAlignment};
@@ -66,17 +66,9 @@ fn moved(place: impl Fn(f64, f64) -> [f64; 2]) -> Vec<(GrayImage, GrayImage)> {
     let mut frames = DRIVE.1.clone();
     for (_, right) in &mut frames {
         let level = right.clone();
-        let (w, h) = level.dimensions();
         for (x, y, pixel) in right.enumerate_pixels_mut() {
-            let [x, y] = place(x.into(), y.into());
-            let (left, top, right, below) = (x.floor(), y.floor(), x - x.floor(), y - y.floor());
-            let at = |dx: f64, dy: f64| {
-                let (x, y) =
-                    ((left + dx).clamp(0.0, f64::from(w) - 1.0), (top + dy).clamp(0.0, f64::from(h) - 1.0));
-                f64::from(level.get_pixel(x as u32, y as u32).0[0])
-            };
-            let row = |dy: f64| at(0.0, dy) * (1.0 - right) + at(1.0, dy) * right;
-            pixel.0[0] = (row(0.0) * (1.0 - below) + row(1.0) * below).round() as u8;
+            let [x, y] = place(x.into(), y.into()).map(|x| x as f32);
+            *pixel = imageops::interpolate_bilinear(&level, x, y).unwrap_or(Luma([0]));
         }
     }
     frames

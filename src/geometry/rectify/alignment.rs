@@ -241,14 +241,20 @@ impl<T: Real> RowAlignment<T> {
 
     /// What that means for matching.
     pub fn health(&self, camera: &Camera<T>, size: ImageSize) -> RowHealth {
-        let error = self.row_error_px(camera, size);
-        if error < T::of(0.25) {
-            RowHealth::Good
-        } else if error < T::of(0.5) {
-            RowHealth::Worn
+        RowHealth::of_error_px(self.row_error_px(camera, size))
+    }
+}
+
+impl RowHealth {
+    /// Of rows that are so far off, px: the root mean square over the image.
+    pub fn of_error_px<T: Real>(error_px: T) -> Self {
+        if error_px < T::of(0.25) {
+            Self::Good
+        } else if error_px < T::of(0.5) {
+            Self::Worn
         } else {
             // Also what is not a number.
-            RowHealth::Bad
+            Self::Bad
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Features that two pictures have in common.
 
 use super::agreement::{FEWEST, RowFit, of_things, on_surfaces};
+use super::contrast::Contrast;
 use crate::correspond::{CorrespondError, Plan, correspond};
 use image::GrayImage;
 use nalgebra::Point2;
@@ -36,7 +37,8 @@ impl PairMatches {
     pub fn find(pictures: [&GrayImage; 2], valid: Option<[&GrayImage; 2]>) -> Result<Self, CorrespondError> {
         let plan =
             Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
-        let found = correspond(&plan, pictures[0], pictures[1])?;
+        let [left, right] = pictures.map(Contrast::spread);
+        let found = correspond(&plan, &left, &right)?;
         let is_shown = |s: &Correspondence<f64>| {
             valid.is_none_or(|[left, right]| is_within(left, &s.first) && is_within(right, &s.second))
         };

@@ -4,6 +4,7 @@
 mod agreement;
 mod beyond;
 mod changes;
+mod contrast;
 mod fault;
 mod few;
 mod lacks;
@@ -17,6 +18,7 @@ pub use search::search;
 
 use agreement::FEWEST;
 use beyond::Beyond;
+use contrast::Contrast;
 use image::GrayImage;
 use lacks::Lacks;
 use serde::Serialize;
@@ -47,6 +49,9 @@ pub struct PairCheck {
     pub over_exposed: f64,
     /// The share of both pictures that is black: 1 and less.
     pub under_exposed: f64,
+    /// How many grey levels of the left and of the right picture all but their darkest and brightest hundredth
+    /// are within.
+    pub grey_levels: [u8; 2],
     /// The share of the left picture that lacks the texture that the right one has in the same rows.
     pub lost_texture: f64,
     /// That of the right one, beside the left one.
@@ -86,6 +91,7 @@ impl PairCheck {
         let search = if fault.is_none() { search(pictures, matches) } else { None };
         let beyond = Beyond::of(matches, config, search);
         let lacks = [0, 1].map(|side| Lacks::of(pictures[side], valid.map(|valid| valid[side])));
+        let contrast = [0, 1].map(|side| Contrast::of(pictures[side], valid.map(|valid| valid[side])));
         let of_both = |of: fn(&Lacks) -> f64| lacks.iter().map(of).sum::<f64>() / 2.0;
         let mut check = Self {
             matches: matches.all.len(),
@@ -98,6 +104,7 @@ impl PairCheck {
             untextured_right: lacks[1].untextured,
             over_exposed: of_both(|lacks| lacks.over_exposed),
             under_exposed: of_both(|lacks| lacks.under_exposed),
+            grey_levels: contrast.map(Contrast::levels),
             lost_texture: lacks[0].lost(&lacks[1]),
             lost_texture_right: lacks[1].lost(&lacks[0]),
             masked: lacks[0].masked,
@@ -110,13 +117,14 @@ impl PairCheck {
         let light = exposure_warning(&lacks);
         let texture =
             if light.is_none() && fault.is_none() { texture_warning(&lacks, matches) } else { None };
+        let faint = if light.is_none() && texture.is_none() { Contrast::warning(contrast) } else { None };
         let masks = mask_warning(&lacks);
         let nothing = (fault.is_none() && light.is_none() && texture.is_none() && masks.is_none())
             .then(|| unmatched_warning(matches))
             .flatten();
         let is_known = range.is_some() && search.is_some();
         let beyond = if is_known { beyond.warnings() } else { [None, None] };
-        let found = [fault].into_iter().chain(beyond).chain([masks, light, texture, nothing]);
+        let found = [fault].into_iter().chain(beyond).chain([masks, light, texture, faint, nothing]);
         check.warnings = found.flatten().collect();
         check
     }

@@ -31,8 +31,9 @@ pub fn search(pictures: [&GrayImage; 2], matches: &PairMatches) -> Option<[u16; 
         if fits(&both) { both } else { ranges.into_iter().flatten().find(fits).unwrap_or(both) };
     let more = 4.0 + (last - first) / 8.0;
     let end = last + more;
-    // From 0 on where that costs little: what is far has few features.
-    let begin = if first - more < 32.0 { 0.0 } else { (first - more).floor() };
+    // From 0 on where that costs little, or at most as much again: what is far has few features, and a wall
+    // behind all has none.
+    let begin = if first - more < (end / 2.0).max(32.0) { 0.0 } else { (first - more).floor() };
     // The margin before what is farthest is given up before anything that is near.
     let begin = if end - begin > most { begin.max((end - most).min(first).floor()) } else { begin };
     let count = ((end - begin).max(1.0) as u16).next_multiple_of(16);

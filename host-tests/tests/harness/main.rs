@@ -5,6 +5,7 @@ mod altered;
 mod calibrate;
 mod calibration;
 mod chance;
+mod contrast;
 mod copied;
 mod deep;
 mod faults;

@@ -2,7 +2,7 @@
 
 use super::lens::{INNER, LensModel};
 use super::normal::{Normal, OUTER};
-use nalgebra::{DMatrix, DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use nalgebra::{DVector, Matrix2x3, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
 
 /// What a camera is made of, in the order of its parameters.
 pub(super) type Inner = [f64; INNER];
@@ -133,7 +133,8 @@ impl Bundle<'_> {
         self.beside_at() + if self.cameras() > 1 { OUTER } else { 0 } + view * OUTER
     }
 
-    fn parameters(&self) -> usize {
+    /// How many parameters there are, free or not.
+    pub fn parameters(&self) -> usize {
         self.view_at(self.views.len())
     }
 
@@ -168,7 +169,8 @@ impl Bundle<'_> {
         self.inner.iter().map(of).sum()
     }
 
-    fn normal(&self) -> Option<Normal> {
+    /// The normal equations at what is found so far.
+    pub fn normal(&self) -> Option<Normal> {
         let shared = self.view_at(0);
         let mut normal = Normal::new(shared, self.views.len());
         for (camera, inner) in self.inner.iter().enumerate() {
@@ -283,16 +285,5 @@ impl Bundle<'_> {
             }
         }
         normal.cost
-    }
-
-    /// The covariance of the cameras' parameters, and of the pose between them, from the residuals.
-    pub fn covariance(&self) -> Option<DMatrix<f64>> {
-        let normal = self.normal()?;
-        let seen = 2 * self.seen.iter().flatten().map(|seen| seen.corners.len()).sum::<usize>();
-        let free = self.parameters() - self.cameras() * self.free.iter().filter(|free| !**free).count();
-        let variance = normal.cost / (seen.checked_sub(free)?.max(1)) as f64;
-        // The Schur complement's inverse is that part of the whole inverse.
-        let (shared, ..) = normal.reduced(0.0)?;
-        Some(shared.cholesky()?.inverse() * variance)
     }
 }

@@ -41,7 +41,8 @@ pub struct ViewFigures {
     pub tilt_deg: [f64; 2],
 }
 
-/// A rig from views of a board.
+/// A rig from views of a board. Its standard deviations hold where residuals of one view go together, as
+/// those of a board that is not flat do.
 #[derive(Clone, PartialEq, Debug)]
 pub struct Calibrated {
     /// The rig, metres.

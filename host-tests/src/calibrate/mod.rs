@@ -7,7 +7,7 @@
 //! * `start`: focal lengths and poses from each view's homography (Zhang 2000).
 //! * `bundle`: the least sum of squares of all residuals, by Levenberg and Marquardt's method; first of each
 //!   camera by itself, lens coefficient by lens coefficient, then of both with one pose between them.
-//!   `normal`: its equations.
+//!   `normal`: its equations. `deviations`: how far off what is found may be.
 //! * `lens`: the models of lenses. `solve`: these in order. `calibrated`: what they find, and its worth.
 //! * [`coverage`]: how much of the pictures the boards reached. [`report`](mod@report): the residuals, drawn.
 //!
@@ -17,6 +17,7 @@ pub mod board;
 mod bundle;
 mod calibrated;
 pub mod coverage;
+mod deviations;
 mod lens;
 mod normal;
 mod paired;

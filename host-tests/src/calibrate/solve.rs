@@ -3,10 +3,11 @@
 use super::board::Pattern;
 use super::bundle::{Bundle, Inner, Outer, Seen};
 use super::calibrated::{Calibrated, SolveError, View, ViewFigures};
+use super::deviations::Deviations;
 use super::lens::INNER;
 use super::lens::LensModel;
 use super::start;
-use nalgebra::{DMatrix, Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
+use nalgebra::{Matrix3, Point2, Point3, Rotation3, Vector2, Vector3};
 use stereopsis::geometry::camera::{Camera, ImageSize, StereoRig, StereoRigError};
 
 /// Finds the rig that explains the views best: both cameras with lenses of a model, and the pose between
@@ -106,24 +107,16 @@ fn result(
     });
     let views: Vec<_> = views.collect();
     let all: Vec<_> = views.iter().flat_map(|view| view.residuals.iter().flatten().copied()).collect();
-    let count = 2 * INNER + 6;
-    let endless = || DMatrix::from_diagonal_element(count, count, f64::INFINITY);
-    let covariance = both.covariance().unwrap_or_else(endless);
-    let sigma = |i: usize| covariance[(i, i)].sqrt();
-    let focal = |camera: usize| sigma(camera * INNER).max(sigma(camera * INNER + 1));
+    let deviations = Deviations::of(both);
+    let sigma = |slopes: &[(usize, f64)]| deviations.as_ref().map_or(f64::INFINITY, |d| d.sigma(slopes));
+    let focal = |camera: usize| sigma(&[(camera * INNER, 1.0)]).max(sigma(&[(camera * INNER + 1, 1.0)]));
     let along = both.beside.t.normalize();
-    let way = Vector3::new(sigma(2 * INNER + 3), sigma(2 * INNER + 4), sigma(2 * INNER + 5));
     // What is far is seen where the turn puts it: `x' = cx' + f w_y` of cameras side by side, and `y' = cy' -
     // f w_x` of one above the other.
     let is_level = along.x.abs() >= along.y.abs();
     let (centre, axis, sign) = if is_level { (2, 1, 1.0) } else { (3, 0, -1.0) };
     let turn = 2 * INNER + axis;
-    let slopes = [(centre, -1.0), (INNER + centre, 1.0), (turn, sign * both.inner[1][centre - 2])];
-    let variance: f64 = slopes
-        .iter()
-        .flat_map(|&(i, a)| slopes.iter().map(move |&(j, b)| (i, j, a * b)))
-        .map(|(i, j, by)| by * covariance[(i, j)])
-        .sum();
+    let shift = [(centre, -1.0), (INNER + centre, 1.0), (turn, sign * both.inner[1][centre - 2])];
     let turned = Rotation3::from_matrix_unchecked(both.beside.r).scaled_axis();
     Ok(Calibrated {
         rig,
@@ -131,9 +124,9 @@ fn result(
         alone_px,
         views,
         focal_sigma_px: [focal(0), focal(1)],
-        baseline_sigma_m: way.component_mul(&along).norm() * square_m,
-        yaw_rad: [turned[axis], sigma(turn)],
-        disparity_sigma_px: variance.max(0.0).sqrt(),
+        baseline_sigma_m: sigma(&[0, 1, 2].map(|i| (2 * INNER + 3 + i, along[i]))) * square_m,
+        yaw_rad: [turned[axis], sigma(&[(turn, 1.0)])],
+        disparity_sigma_px: sigma(&shift),
     })
 }
 

@@ -1,8 +1,8 @@
 //! Rigs from corners.
 
 use super::{CLOSE_STANDS, SIZE, STANDS, markers, pattern, rig, stand};
-use nalgebra::Vector2;
-use stereopsis::geometry::camera::{Distortion, Fisheye, Lens};
+use nalgebra::{Point2, Point3, Rotation3, Vector2};
+use stereopsis::geometry::camera::{Distortion, Fisheye, Lens, StereoRig};
 use stereopsis_host::calibrate::board::{find, find_marked};
 use stereopsis_host::calibrate::scene::BoardCamera;
 use stereopsis_host::calibrate::{LensModel, SolveError, View, solve, solve_paired};
@@ -99,6 +99,59 @@ fn a_rig_from_noisy_corners_is_as_near_as_it_says() {
     // What moves no parameter is at a minimum: no other rig fits better.
     let again = solve(LensModel::Brown, pattern(9, 6), SQUARE_M, SIZE, &views[..9]).expect("a rig");
     assert!(again.rms_px < found.rms_px * 1.05);
+}
+
+/// Views of boards, each bent in its own way by so many squares, in the middle of its sides (a standard
+/// deviation), with corners that are off by 0.1 px along each axis.
+fn bent_views(count: usize, bend: f64, random: &mut Random) -> Vec<View> {
+    let pattern = pattern(9, 6);
+    let view = |(axis, place)| {
+        let stands = stand(pattern, axis, place, SQUARE_M);
+        let [along, down] = [(); 2].map(|()| bend * random.gauss());
+        let corners = [0, 1].map(|i| {
+            let corner = |p: Point2<f64>| {
+                let height = along * (p.x / 4.0 - 1.0).powi(2) + down * (p.y / 2.5 - 1.0).powi(2);
+                let point = stands[i].transform(&Point3::new(p.x, p.y, height));
+                let seen = rig().cameras()[i].project(&point).expect("in front");
+                seen + 0.1 * Vector2::new(random.gauss(), random.gauss())
+            };
+            pattern.places().map(corner).collect()
+        });
+        View::whole(corners)
+    };
+    STANDS.into_iter().take(count).map(view).collect()
+}
+
+/// Deviations are those of many tries: where all corners are off by themselves, and where those of one view
+/// go together, for its board is bent.
+#[test]
+fn a_rig_is_as_far_off_as_it_says() {
+    const TRIES: usize = 30;
+    const WHAT: [&str; 4] = ["left focal length", "right focal length", "baseline", "yaw"];
+    let (truth, mut random) = (rig(), Random::new(5));
+    let numbers = |rig: &StereoRig<f64>| {
+        let [left, right] = rig.cameras().each_ref().map(|camera| camera.focal_px().0);
+        let turn = Rotation3::from_matrix_unchecked(rig.pose().to_opencv().0).scaled_axis();
+        [left, right, rig.baseline_m(), turn.y]
+    };
+    for (count, bend) in [(10, 0.0), (10, 0.03), (6, 0.03), (4, 0.0)] {
+        let (mut off, mut told) = ([0.0; 4], [0.0; 4]);
+        for _ in 0..TRIES {
+            let views = bent_views(count, bend, &mut random);
+            let found = solve(LensModel::Brown, pattern(9, 6), SQUARE_M, SIZE, &views).expect("a rig");
+            let errors = numbers(&found.rig).into_iter().zip(numbers(&truth));
+            let [left, right] = found.focal_sigma_px;
+            let sigmas = [left, right, found.baseline_sigma_m, found.yaw_rad[1]];
+            for (i, ((found, truth), sigma)) in errors.zip(sigmas).enumerate() {
+                off[i] += (found - truth).powi(2);
+                told[i] += sigma * sigma;
+            }
+        }
+        for (what, (off, told)) in WHAT.iter().zip(off.into_iter().zip(told)) {
+            let ratio: f64 = f64::sqrt(off / told);
+            assert!((0.6..1.5).contains(&ratio), "{count} views, bend {bend}, {what}: {ratio}");
+        }
+    }
 }
 
 #[test]

@@ -66,15 +66,6 @@ pub fn arguments(bench: &Bench, change: &[(&str, &str)]) -> Vec<String> {
 }
 
 #[test]
-fn another_pattern_is_named() {
-    let bench = Bench::new();
-    pictures(&bench);
-    for given in ["5x5", "6x4", "7x5", "7x6"] {
-        bench.refused(&arguments(&bench, &[("--pattern", given)]), "6 x 5 inner corners; give --pattern 6x5");
-    }
-}
-
-#[test]
 fn a_rig_is_calibrated_checked_and_converted() {
     let bench = Bench::new();
     pictures(&bench);

@@ -8,6 +8,7 @@ mod bundle;
 mod calibrate;
 mod calibrations;
 mod calibrate_pairs;
+mod calibrate_patterns;
 mod demo;
 mod dump;
 mod eval;

@@ -1,6 +1,7 @@
 //! The boards in pictures of pairs, and what is wrong where there are none.
 
 use crate::failure::Failure;
+use std::cmp::Reverse;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use stereopsis::camera::LineSource;
@@ -19,6 +20,8 @@ pub struct Found {
 const ALIKE_PX: f64 = 0.1;
 /// Images that are searched for a smaller board where none shows the one that is given.
 const TRIED: usize = 6;
+/// Sizes that are looked for of those that images show in place of the given one.
+const OTHERS: usize = 3;
 
 /// An image with its board.
 struct Seen {
@@ -45,7 +48,7 @@ pub fn boards(
     }
     let size = counts.iter().max_by_key(|(count, _)| *count).map(|(_, size)| *size);
     let size = size.ok_or_else(|| Failure::new("--left and --right: no image has a partner"))?;
-    refuse_other(pattern, all.iter().flat_map(|(_, left, right)| [&left.board, &right.board]))?;
+    refuse_other(pattern, &all)?;
     if markers.is_none() && all.iter().all(|(_, left, right)| left.board.is_err() && right.board.is_err()) {
         refuse_squares(pattern, all.iter().flat_map(|(paths, ..)| paths))?;
     }
@@ -149,34 +152,35 @@ fn look_at_all(
 }
 
 /// Refuses a pattern where more images show a board of one other size.
-fn refuse_other<'a>(
-    pattern: Pattern,
-    boards: impl Iterator<Item = &'a Result<Board, BoardError>>,
-) -> Result<(), Failure> {
-    let (mut images, mut fitting) = (0, 0);
-    let mut others: Vec<(usize, (usize, usize))> = Vec::new();
-    for board in boards {
-        images += 1;
-        match board.as_ref().map_err(BoardError::other_board) {
-            Ok(_) => fitting += 1,
-            Err(Some(size)) => match others.iter_mut().find(|(_, other)| *other == size) {
-                Some((count, _)) => *count += 1,
-                None => others.push((1, size)),
-            },
-            Err(None) => {}
-        }
+fn refuse_other(pattern: Pattern, all: &[([PathBuf; 2], Seen, Seen)]) -> Result<(), Failure> {
+    let images = 2 * all.len();
+    let boards = || all.iter().flat_map(|(_, left, right)| [&left.board, &right.board]);
+    let fitting = boards().filter(|board| board.is_ok()).count();
+    let named: Vec<_> = boards().filter_map(|board| board.as_ref().err()?.other_board()).collect();
+    if 3 * named.len() <= images {
+        return Ok(());
     }
-    match others.into_iter().max_by_key(|(count, _)| *count) {
-        Some((count, (columns, rows))) if 3 * count > images && count > fitting => {
-            Err(Failure::new(format!(
+    let often = |size: &(usize, usize)| named.iter().filter(|other| *other == size).count();
+    let mut sizes = named.clone();
+    sizes.sort_by_key(|size| (Reverse(often(size)), *size));
+    sizes.dedup();
+    for (columns, rows) in sizes.into_iter().take(OTHERS) {
+        let Some(other) = Pattern::new(columns, rows) else { continue };
+        // A smaller pattern fits, too, where corners of the board were missed, and other images name part of
+        // the board: what counts is where a size is found.
+        let again = look_at_all(other, None, all.iter().map(|(paths, ..)| paths.clone()).collect())?;
+        let shown = again.iter().flat_map(|(_, left, right)| [&left.board, &right.board]);
+        let count = shown.filter(|board| board.is_ok()).count().max(often(&(columns, rows)));
+        if 3 * count > images && count > fitting {
+            return Err(Failure::new(format!(
                 "--pattern: {} x {} is given, and {count} of {images} images show a board with {columns} x \
                  {rows} inner corners; give --pattern {columns}x{rows}",
                 pattern.columns(),
                 pattern.rows()
-            )))
+            )));
         }
-        _ => Ok(()),
     }
+    Ok(())
 }
 
 fn look(

@@ -42,8 +42,8 @@ pub struct Rows {
     pub matches: usize,
     /// The share of them whose rows these angles explain, up to a pixel.
     pub agreeing: f64,
-    /// How many times as large as the left image the right one is, where that moves rows by more than 0.25 px;
-    /// else 1.
+    /// How many times as large as the left image the right one is, where that moves rows by more than 0.25
+    /// px; else 1.
     pub scale: f64,
     /// `good`: under 0.25 px; `worn`: up to 0.5 px, answers are lost; `bad`: more.
     pub health: &'static str,
@@ -169,8 +169,8 @@ impl Rows {
             (true, true) => format!("{scaled}; {turned}"),
         };
         Some(format!(
-            "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {why}; calibrate \
-             anew or rectify",
+            "the rows of the images are {:.2} px (+- {:.2}) off, over 0.25 px costs answers; {why}; \
+             calibrate anew or rectify",
             self.error_px, self.sigma_px
         ))
     }

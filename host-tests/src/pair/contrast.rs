@@ -48,8 +48,8 @@ impl Contrast {
             "see whether a lens is fogged or its camera looks into the light"
         };
         Some(format!(
-            "the {images} little contrast: grey levels from {least} to {most}, of which one is as much as what \
-             is to be matched; {cure}"
+            "the {images} little contrast: grey levels from {least} to {most}, of which one is as much as \
+             what is to be matched; {cure}"
         ))
     }
 

@@ -49,8 +49,8 @@ pub struct PairCheck {
     pub over_exposed: f64,
     /// The share of both pictures that is black: 1 and less.
     pub under_exposed: f64,
-    /// How many grey levels of the left and of the right picture all but their darkest and brightest hundredth
-    /// are within.
+    /// How many grey levels all but the darkest and the brightest hundredth of the left and of the right
+    /// picture are within.
     pub grey_levels: [u8; 2],
     /// The share of the left picture that lacks the texture that the right one has in the same rows.
     pub lost_texture: f64,

@@ -42,6 +42,9 @@ pub enum SolveError {
     /// No structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
+    /// One of the two views whose distance is known stands nowhere.
+    #[error("view {0} stands nowhere, and the known distance is its own")]
+    Unplaced(usize),
     /// The length is none.
     #[error(transparent)]
     Scale(#[from] ScaleError),
@@ -86,6 +89,9 @@ pub fn solve(
             (0..n).map(|point| found.point(point).copied()).collect(),
         ),
         Some(Length { views: pair, metres }) => {
+            if let Some(view) = [pair.0, pair.1].into_iter().find(|&view| found.pose(view).is_err()) {
+                return Err(SolveError::Unplaced(view));
+            }
             let found = found.with_baseline(pair, metres)?;
             (
                 (0..views).map(|view| found.pose(view).copied()).collect(),

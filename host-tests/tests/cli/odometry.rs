@@ -246,6 +246,12 @@ fn views_of_a_street_stand_where_they_stood() {
     let twice = [&one, &again, &second, &third, &last].map(String::as_str);
     let known = ["--calib", &calib, "--baseline", "1", "--out", &other];
     bench.refused(&[&["structure", "--images"][..], &twice, &known].concat(), "stand in one place");
+    // Nor does one of another scene.
+    let other_scene = bench.path("other scene.png").display().to_string();
+    image::open(&one).expect("a picture").flipv().save(&other_scene).expect("room");
+    let of_other = [&other_scene, &second, &third, &last].map(String::as_str);
+    let refused = [&["structure", "--images"][..], &of_other, &known].concat();
+    bench.refused(&refused, "other scene.png stands nowhere");
     assert!(!bench.path("other").exists());
 }
 

@@ -29,20 +29,6 @@ fn little_contrast_is_named_and_hides_no_fault() {
             assert_eq!(check(&right, &left, 64).fault, Some(PairFault::Swapped), "{share} {above}");
         }
         let found = check(&left, &right, 64);
-            assert!(
-                found.fault.is_none() && found.grey_levels.iter().all(|&levels| levels < 40),
-                "{found:?}"
-            );
-            let said = found.warnings.iter().find(|said| said.starts_with("the images have little contrast"));
-            assert!(said.is_some_and(|said| said.contains(cure)), "{found:?}");
-            assert_eq!(check(&right, &left, 64).fault, Some(PairFault::Swapped), "{share} {above}");
-        }
-        let found = check(&left, &faint(&right, 0.18, 100), 64);
-        assert!(
-            found.warnings.iter().any(|said| said.starts_with("the right image has little")),
-            "{found:?}"
-        );
-        let found = check(&left, &right, 64);
         assert!(!found.warnings.iter().any(|said| said.contains("contrast")), "{found:?}");
     }
 }

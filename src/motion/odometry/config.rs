@@ -51,8 +51,8 @@ impl<T: Real> OdometryRig<T> {
         Ok(Self { camera, right: Some((of(rig.baseline_m()), right_cx)), error: RightError::NONE })
     }
 
-    /// The pair with a right camera that is turned about X and Z as its rows say. Without it rows that are off
-    /// by more than 1.5 px are looked for in vain.
+    /// The pair with a right camera that is turned about X and Z as its rows say. Without it partners in rows
+    /// that are off by more than 1.5 px are not found.
     #[must_use]
     pub fn with_rows(mut self, rows: &RowAlignment<T>) -> Self {
         let [pitch, _, roll] = rows.rotation_rad;

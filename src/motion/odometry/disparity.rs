@@ -23,5 +23,5 @@ pub(super) fn disparity<T: Real>(now: &Moment<'_, T>, [x, y]: [f32; 2], expected
     let found = template.align(&right, &Template::UPRIGHT, [start + correction, y + lower], ALIGN_PX).ok()?;
     let [correction, lower] = now.rig.correction_px([found.x_px, y]);
     let good = found.correlation > CORRELATED && (found.y_px - y - lower).abs() < ROWS_PX;
-    good.then(|| [x - found.x_px + offset + correction, found.y_px - y])
+    good.then_some([x - found.x_px + offset + correction, found.y_px - y])
 }

@@ -37,14 +37,14 @@ impl<T: Real> RightError<T> {
         self.principal - self.yaw
     }
 
-    /// The most that the numbers which rows show, too, add to a disparity a quarter of a focal length from the
-    /// middle, in focal lengths.
+    /// The most that the roll or the scale adds to a disparity a quarter of a focal length from the middle, in
+    /// focal lengths.
     pub fn aside(&self) -> T {
         self.roll.abs().max(self.scale.abs()) * T::of(0.25)
     }
 
-    /// What has to be added to a disparity, in focal lengths, where the right camera sees a point at `(x, y)`:
-    /// one that is turned by a small angle w about its axis sees it at `x - w y`.
+    /// What has to be added to a disparity, in focal lengths, where the right camera sees a point at `(x,
+    /// y)`: one that is turned by a small angle w about its axis sees it at `x - w y`.
     pub fn correction(&self, [x, y]: [T; 2]) -> T {
         let [principal, yaw] = Self::slopes(x);
         principal * self.principal + yaw * self.yaw - self.roll * y + self.scale * x

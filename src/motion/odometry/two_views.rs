@@ -1,4 +1,4 @@
-//! Equations of two views of a pair: its motion between them and the error of its right camera, as least squares.
+//! Equations of two views of a pair: its motion between them and its right camera's error, as least squares.
 
 use super::inverse_depth::{InversePoint, seen};
 use super::pose_estimate::{PointMatch, WIDTH};

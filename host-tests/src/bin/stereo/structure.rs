@@ -1,28 +1,27 @@
 //! `stereo structure`: pictures of one camera from several places into where it stood, and points.
 
+mod images;
+
 use crate::failure::Failure;
-use crate::image_files::files;
 use crate::input::fits;
 use crate::place::json;
 use crate::progress::Progress;
 use crate::shared::{print, remark, rows};
 use clap::Args;
-use image::{GrayImage, RgbImage};
+use images::{Images, given};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use stereopsis::geometry::camera::{Camera, ImageSize};
+use stereopsis::geometry::camera::Camera;
 use stereopsis::motion::structure::ViewState;
 use stereopsis_host::calibration::{Calibration, Cameras, Fault, RawCalibration};
 use stereopsis_host::command_line::one_line;
 use stereopsis_host::correspond::Plan;
-use stereopsis_host::focus::stack::read;
-use stereopsis_host::mock::significant_bits;
 use stereopsis_host::odometry::picture::svg_of;
 use stereopsis_host::odometry::poses;
 use stereopsis_host::output::Staging;
 use stereopsis_host::ply::{self, ColouredPoint};
 use stereopsis_host::views::colmap::Model;
-use stereopsis_host::views::{Found, Length, Links, link, look_again, solve};
+use stereopsis_host::views::{Found, Length, Links, SolveError, link, look_again, solve};
 
 /// What follows the options in the command's help.
 pub const EXAMPLE: &str = "Example:
@@ -67,9 +66,6 @@ fn threshold(text: &str) -> Result<f64, &'static str> {
     value.ok_or("a number from 0.1 to 20 is needed")
 }
 
-/// Images at most: all pairs of them are tried as a beginning.
-const MOST: usize = 60;
-
 /// A view that has fewer sights than that part of what the middle one has may have been placed by chance.
 const FEW: usize = 10;
 
@@ -97,14 +93,8 @@ struct ViewAnswer {
 /// Views whose distance tells lengths differ by so much in what they see, px.
 const APART_PX: f64 = 2.0;
 
-struct Images {
-    names: Vec<String>,
-    grey: Vec<GrayImage>,
-    colours: Vec<RgbImage>,
-}
-
 pub fn run(args: &StructureArgs) -> Result<(), Failure> {
-    let images = images(args)?;
+    let images = Images::read(&args.images)?;
     let camera = camera(args, &images)?;
     let mut staging = Staging::new(&args.out)?;
     let count = images.grey.len();
@@ -113,7 +103,14 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     let links = link(&plan, &images.grey, || progress.one_more())?;
     drop(progress);
     let length = args.baseline.map(|metres| Length { views: (0, 1), metres });
-    let failed = |why| Failure::new(format!("--images {}: {why}", given(&args.images)));
+    let failed = |why| match why {
+        SolveError::Unplaced(view) => Failure::new(format!(
+            "--baseline: {} stands nowhere, and so the distance of {} and {} tells no length; begin with two \
+             images that show the same",
+            images.names[view], images.names[0], images.names[1]
+        )),
+        why => Failure::new(format!("--images {}: {why}", given(&args.images))),
+    };
     let first = solve(&camera, count, &links, args.threshold, length).map_err(failed)?;
     let (links, found) = again(&camera, &images, links, first, (args.threshold, length));
     let beside = found.beside_first();
@@ -135,7 +132,7 @@ pub fn run(args: &StructureArgs) -> Result<(), Failure> {
     staging.write("poses.txt", |out| poses::write(out, &standing))?;
     let colours = colours(&images, &links);
     staging.write("cloud.ply", |out| ply::write_in(out, &cloud(&found, &colours), &unit))?;
-    let model = Model::new((&camera, size(&images)), &images.names, &links, &found, args.threshold);
+    let model = Model::new((&camera, images.size()), &images.names, &links, &found, args.threshold);
     staging.write("cameras.txt", |out| model.cameras(out))?;
     staging.write("images.txt", |out| model.images(out))?;
     staging.write("points3D.txt", |out| model.points(out, |number| colours(number).unwrap_or_default()))?;
@@ -194,7 +191,7 @@ fn again(
 /// The camera of the images, which the calibration must be of.
 fn camera(args: &StructureArgs, images: &Images) -> Result<Camera<f64>, Failure> {
     let camera = Cameras::open_first(&args.calib)?;
-    let size = size(images);
+    let size = images.size();
     if let Ok(rectified) = Calibration::open_all(&args.calib, Path::new(""), None) {
         rectified.check_size(size.width, size.height)?;
     }
@@ -204,43 +201,6 @@ fn camera(args: &StructureArgs, images: &Images) -> Result<Camera<f64>, Failure>
         _ => fits(args.calib.first().map_or(Path::new(""), PathBuf::as_path), camera.principal_point(), size)
             .map(|()| camera),
     }
-}
-
-/// What was given, of many names the first.
-fn given(names: &[String]) -> String {
-    match names {
-        [first, _, ..] => format!("{first} and {} more", names.len() - 1),
-        _ => names.concat(),
-    }
-}
-
-fn images(args: &StructureArgs) -> Result<Images, Failure> {
-    let paths = files("--images", &args.images)?;
-    if !(2..=MOST).contains(&paths.len()) {
-        let (given, count) = (given(&args.images), paths.len());
-        return Err(Failure::new(format!("--images {given}: {count} images; 2 to {MOST} are needed")));
-    }
-    let mut images = Images { names: Vec::new(), grey: Vec::new(), colours: Vec::new() };
-    let bits = significant_bits(&paths);
-    for path in &paths {
-        let frame = read(path, bits)?;
-        let size = frame.grey.dimensions();
-        if let Some(first) = images.grey.first().map(GrayImage::dimensions).filter(|&first| first != size) {
-            return Err(Failure::new(format!(
-                "{}: is {} x {} and {} is {} x {}; all images must have one size",
-                path.display(),
-                size.0,
-                size.1,
-                paths[0].display(),
-                first.0,
-                first.1
-            )));
-        }
-        images.names.push(path.file_name().unwrap_or_default().to_string_lossy().into_owned());
-        images.grey.push(frame.grey);
-        images.colours.push(frame.colours);
-    }
-    Ok(images)
 }
 
 fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
@@ -270,12 +230,6 @@ fn answer(found: &Found, images: &Images, unit: &str) -> Answer {
         sights: found.report.observations,
         rms_px: found.rms_px,
     }
-}
-
-/// The size of the images, which have at most 4096 columns and rows.
-fn size(images: &Images) -> ImageSize {
-    let (width, height) = images.grey.first().map_or((0, 0), GrayImage::dimensions);
-    ImageSize { width: width as u16, height: height as u16 }
 }
 
 /// The colours of points, by their numbers, in the first image that shows them.

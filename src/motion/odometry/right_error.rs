@@ -37,8 +37,8 @@ impl<T: Real> RightError<T> {
         self.principal - self.yaw
     }
 
-    /// The most that the roll or the scale adds to a disparity a quarter of a focal length from the middle, in
-    /// focal lengths.
+    /// The most that the roll or the scale adds to a disparity a quarter of a focal length from the middle,
+    /// in focal lengths.
     pub fn aside(&self) -> T {
         self.roll.abs().max(self.scale.abs()) * T::of(0.25)
     }

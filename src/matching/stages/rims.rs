@@ -126,7 +126,7 @@ impl Row<'_> {
         let first = columns.start;
         let answers = part(self.answers, columns);
         let mut x = if way == RIGHT { 0 } else { answers.len().wrapping_add(LEFT) };
-        let mut empty = 0;
+        let mut to_far = far_when_empty;
         while let Some(answer) = answers.get(x) {
             keep_loop();
             let here = answer.get();
@@ -134,10 +134,10 @@ impl Row<'_> {
                 if i32::from(here.raw()) > nearest && !self.has_edge(first + x) {
                     self.refuse_rim(first + x, way);
                 }
-                (nearest, empty) = (nearest_behind(here), 0);
+                (nearest, to_far) = (nearest_behind(here), far_when_empty);
             } else {
-                empty += 1;
-                nearest = if empty == far_when_empty { -1 } else { nearest };
+                to_far = to_far.wrapping_sub(1);
+                nearest = if to_far == 0 { -1 } else { nearest };
             }
             x = x.wrapping_add(way);
         }

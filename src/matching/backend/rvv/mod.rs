@@ -12,7 +12,7 @@
 //! * `features`: what is compared along paths. `cost`: what pixels differ by; `within_edges`: averaged so.
 //! * `changes`: what paths pay at each pixel. `down`, `right`, `left`: the paths, the last one with the
 //!   winners.
-//! * `edges`: where brightness changes. `speckle`: support counted.
+//! * `edges`: where brightness changes. `speckle`: support counted. `fill`: small gaps.
 //! * `step`, `winner`: pieces of the assembly.
 //!
 //! Of the stages around it the compiler makes vectors where it finds that they gain.
@@ -31,6 +31,7 @@ mod cost;
 mod down;
 mod edges;
 mod features;
+mod fill;
 mod left;
 mod right;
 mod rows;
@@ -41,7 +42,7 @@ mod within_edges;
 use super::isa::{Isa, sole_kernel};
 use super::parameters::{SgmParameters, WindowParameters};
 use super::portable::{self, sgm};
-use super::work::{CensusWork, CostWork, EdgeWork, Guide, PathWork, SpeckleWork, WindowWork};
+use super::work::{CensusWork, CostWork, EdgeWork, FillWork, Guide, PathWork, SpeckleWork, WindowWork};
 use crate::matching::kernel::Kernel;
 use crate::matching::memory::slices::{part, split_mut};
 use crate::matching::memory::views::{Plain, view_mut};
@@ -49,7 +50,6 @@ use crate::matching::memory::winners::Select;
 use crate::units::Disparity;
 use columns::Columns;
 use features::VectorRows;
-use rows::fill;
 
 pub(in crate::matching) use super::plain::{BY_CAPACITY, CODES_SHARE_A_BYTE, columns_begin};
 
@@ -66,7 +66,7 @@ impl Isa for Backend {
 
     #[inline(always)]
     fn fill_bytes<T: Plain>(self, row: &mut [T], byte: u8) {
-        fill(view_mut(row), byte);
+        rows::fill(view_mut(row), byte);
     }
 
     #[inline(always)]
@@ -125,6 +125,11 @@ impl Isa for Backend {
     }
 
     #[inline(always)]
+    fn fill(self, work: FillWork<'_>) {
+        fill::fill(work);
+    }
+
+    #[inline(always)]
     fn push_edges(self, edges: &mut [u8], lines: [&[u8]; 3], least: u16) {
         edges::push(edges, lines, least);
     }
@@ -139,7 +144,7 @@ fn median(rows: [&[Disparity]; 3], out: &mut [Disparity]) {
 #[inline(never)]
 fn enter<S: SgmParameters>(work: &mut PathWork<'_>, row: CostWork<'_>, columns: Columns) {
     if row.is_first {
-        fill(work.costs, 0);
+        rows::fill(work.costs, 0);
     }
     if let Some(features) = sgm::features::of::<VectorRows, S>(work, row.lines, row.workspace) {
         cost::enter::<S>(work, &features, columns);

@@ -61,6 +61,12 @@ impl<T: Real> RightError<T> {
         row * self.row + roll * self.roll + scale * self.scale
     }
 
+    /// What shows in no row, and what does.
+    pub fn parts(&self) -> [Self; 2] {
+        let Self { principal, yaw, .. } = *self;
+        [Self { principal, yaw, ..Self::NONE }, Self { principal: T::ZERO, yaw: T::ZERO, ..*self }]
+    }
+
     /// Both errors together, of small angles.
     pub fn plus(&self, other: &Self) -> Self {
         Self {

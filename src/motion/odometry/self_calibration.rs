@@ -192,11 +192,12 @@ impl<T: Real> SelfCalibration<T> {
             let found = self.estimate(rig);
             let px = |x: T| x.abs() * rig.focal();
             let (off, aside) = (px(self.mean.in_middle()), px(self.mean.aside()));
-            let is_off = (off > T::of(LEAST_PX) && off > found.sigma_px * T::of(DEVIATIONS))
-                || aside > T::of(LEAST_PX)
-                || px(self.mean.row) > T::of(LEAST_ROW_PX);
-            if now.config.corrects_rig && found.is_sure && (self.is_applied || is_off) {
-                self.apply(rig, tracks);
+            let is_off = [
+                off > T::of(LEAST_PX) && off > found.sigma_px * T::of(DEVIATIONS),
+                aside > T::of(LEAST_PX) || px(self.mean.row) > T::of(LEAST_ROW_PX),
+            ];
+            if now.config.corrects_rig && found.is_sure {
+                self.apply(rig, tracks, is_off);
             }
         }
         self.anchor(rig, &before, tracks, matches);
@@ -278,16 +279,22 @@ impl<T: Real> SelfCalibration<T> {
         [[d * by, -b * by], [-b * by, a * by]]
     }
 
-    /// Corrects the rig by the estimate, and the points that were placed without it.
-    fn apply(&mut self, rig: &mut OdometryRig<T>, tracks: &mut [Track<T>]) {
+    /// Corrects the rig by those parts of the estimate that are off, and by those that it was corrected by
+    /// before, and the points that were placed without it.
+    fn apply(&mut self, rig: &mut OdometryRig<T>, tracks: &mut [Track<T>], is_off: [bool; 2]) {
+        let (mut by, mut left) = (RightError::NONE, RightError::NONE);
+        for ((part, before), is_off) in self.mean.parts().iter().zip(rig.error.parts()).zip(is_off) {
+            let to = if is_off || before != RightError::NONE { &mut by } else { &mut left };
+            *to = to.plus(part);
+        }
         let baseline = rig.baseline();
         for track in tracks.iter_mut().filter(|track| track.used) {
             let at = &mut track.point.at;
             let place = [at.x - baseline * at.z, at.y];
-            at.z += self.mean.correction(place) / baseline;
+            at.z += by.correction(place) / baseline;
         }
-        rig.error = rig.error.plus(&self.mean);
-        self.mean = RightError::NONE;
-        self.is_applied = true;
+        rig.error = rig.error.plus(&by);
+        self.mean = left;
+        self.is_applied |= by != RightError::NONE;
     }
 }

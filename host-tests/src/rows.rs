@@ -77,7 +77,7 @@ impl Rows {
             let [px, sigma] = scaled.by_scale_px(size.height);
             scaled.is_agreed() && scaled.agreeing >= fit.agreeing && px > BORNE_PX && px > 3.0 * sigma
         };
-        let scaled = || RowFit::with_scale(&matches.in_rows, by).filter(is_scaled);
+        let scaled = || fit.with_scale(&matches.in_rows, by).filter(is_scaled);
         let fit =
             if fit.is_agreed() { scaled().unwrap_or(fit) } else { of_all().or_else(scaled).unwrap_or(fit) };
         Some(Self::of(&fit, by, camera.is_some(), size))

@@ -96,14 +96,13 @@ impl RowFit {
         Self::at_scale(matches, camera, 1.0)
     }
 
-    /// The same, with the scale of the right picture that the matches say: of up to a tenth larger or smaller
-    /// one that clearly more agree with, as exactly as what is left over of their rows tells.
-    pub fn with_scale(matches: &[Correspondence<f64>], camera: &Camera<f64>) -> Option<Self> {
+    /// The fit of the same matches with the scale of the right picture that they say: of up to a tenth larger
+    /// or smaller one that clearly more agree with, as exactly as what is left over of their rows tells.
+    pub fn with_scale(&self, matches: &[Correspondence<f64>], camera: &Camera<f64>) -> Option<Self> {
         let scales = (-10..=10).map(|step| 1.0 + 0.01 * f64::from(step));
         let fits = scales.filter_map(|scale| Self::at_scale(matches, camera, scale));
         let most = fits.max_by(|a, b| a.agreeing.total_cmp(&b.agreeing));
-        let unscaled = Self::of(matches, camera)?;
-        let begin = most.filter(|most| most.is_gain(most.agreeing - unscaled.agreeing)).unwrap_or(unscaled);
+        let begin = most.filter(|most| most.is_gain(most.agreeing - self.agreeing)).unwrap_or(*self);
         let again = |fit: Self, _| Self::at_scale(matches, camera, fit.scale * (1.0 + fit.larger[0]));
         (0..3).try_fold(begin, again)
     }

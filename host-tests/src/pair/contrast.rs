@@ -53,16 +53,15 @@ impl Contrast {
         ))
     }
 
-    /// The picture with its few grey levels spread over all that there are.
-    pub fn spread(picture: &GrayImage) -> Cow<'_, GrayImage> {
-        let contrast = Self::of(picture, None);
-        let levels = u32::from(contrast.levels());
+    /// The picture with these grey levels spread over all that there are, where they are few.
+    pub fn spread(self, picture: &GrayImage) -> Cow<'_, GrayImage> {
+        let levels = u32::from(self.levels());
         if levels == 0 || levels >= FEW.into() {
             return Cow::Borrowed(picture);
         }
         let mut spread = picture.clone();
         for pixel in spread.iter_mut() {
-            let above = u32::from(pixel.saturating_sub(contrast.least)).min(levels);
+            let above = u32::from(pixel.saturating_sub(self.least)).min(levels);
             *pixel = (255 * above / levels) as u8;
         }
         Cow::Owned(spread)

@@ -28,6 +28,8 @@ pub struct PairMatches {
     pub in_rows: Vec<Correspondence<f64>>,
     /// How many features each picture has.
     pub(super) features: [usize; 2],
+    /// The grey levels of each picture.
+    pub(super) contrast: [Contrast; 2],
     /// Columns and rows of the pictures.
     size: (u32, u32),
 }
@@ -37,7 +39,8 @@ impl PairMatches {
     pub fn find(pictures: [&GrayImage; 2], valid: Option<[&GrayImage; 2]>) -> Result<Self, CorrespondError> {
         let plan =
             Plan { corners: CORNERS, levels: 1, orientation: Some(Orientation::Upright), ..Plan::default() };
-        let [left, right] = pictures.map(Contrast::spread);
+        let contrast = [0, 1].map(|side| Contrast::of(pictures[side], valid.map(|valid| valid[side])));
+        let [left, right] = [0, 1].map(|side| contrast[side].spread(pictures[side]));
         let found = correspond(&plan, &left, &right)?;
         let is_shown = |s: &Correspondence<f64>| {
             valid.is_none_or(|[left, right]| is_within(left, &s.first) && is_within(right, &s.second))
@@ -52,7 +55,7 @@ impl PairMatches {
             .collect();
         let in_rows = all.iter().copied().filter(|s| (s.first.y - s.second.y).abs() < ROWS_APART).collect();
         let features = [found.left.len(), found.right.len()];
-        Ok(Self { all, in_rows, features, size: pictures[0].dimensions() })
+        Ok(Self { all, in_rows, features, contrast, size: pictures[0].dimensions() })
     }
 
     /// How many there are.

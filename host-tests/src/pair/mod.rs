@@ -91,7 +91,6 @@ impl PairCheck {
         let search = if fault.is_none() { search(pictures, matches) } else { None };
         let beyond = Beyond::of(matches, config, search);
         let lacks = [0, 1].map(|side| Lacks::of(pictures[side], valid.map(|valid| valid[side])));
-        let contrast = [0, 1].map(|side| Contrast::of(pictures[side], valid.map(|valid| valid[side])));
         let of_both = |of: fn(&Lacks) -> f64| lacks.iter().map(of).sum::<f64>() / 2.0;
         let mut check = Self {
             matches: matches.all.len(),
@@ -104,7 +103,7 @@ impl PairCheck {
             untextured_right: lacks[1].untextured,
             over_exposed: of_both(|lacks| lacks.over_exposed),
             under_exposed: of_both(|lacks| lacks.under_exposed),
-            grey_levels: contrast.map(Contrast::levels),
+            grey_levels: matches.contrast.map(Contrast::levels),
             lost_texture: lacks[0].lost(&lacks[1]),
             lost_texture_right: lacks[1].lost(&lacks[0]),
             masked: lacks[0].masked,
@@ -117,7 +116,8 @@ impl PairCheck {
         let light = exposure_warning(&lacks);
         let texture =
             if light.is_none() && fault.is_none() { texture_warning(&lacks, matches) } else { None };
-        let faint = if light.is_none() && texture.is_none() { Contrast::warning(contrast) } else { None };
+        let faint =
+            if light.is_none() && texture.is_none() { Contrast::warning(matches.contrast) } else { None };
         let masks = mask_warning(&lacks);
         let nothing = (fault.is_none() && light.is_none() && texture.is_none() && masks.is_none())
             .then(|| unmatched_warning(matches))

@@ -93,7 +93,7 @@ pub struct RigEstimate<T> {
 }
 
 impl<T: Real> RigEstimate<T> {
-    /// Whether the pair is off by more than two deviations and 0.2 px.
+    /// Whether disparities in the middle are off by more than two deviations and 0.2 px.
     pub fn is_off(&self) -> bool {
         let off = self.disparity_px.abs();
         self.is_sure && off > self.sigma_px * T::of(2.0) && off > T::of(0.2)
